@@ -44,7 +44,7 @@ function row(it: WorkspaceRecording, timed: boolean): HTMLElement {
     element(
       "td",
       {},
-      element("a", { href: `#/recordings/${it.id}` }, it.name),
+      element("a", { href: `#/recording/${it.id}/time` }, it.name),
       it.partial
         ? element(
             "p",

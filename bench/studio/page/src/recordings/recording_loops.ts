@@ -1,8 +1,10 @@
-import type { Api } from "../api/api";
 import type { Loops, Recording } from "../api/recordings";
 import { button, element, labelled, select } from "../ui/dom";
 import { swatch } from "../ui/time/time_plot";
 import { XyPlot, type PlotLine } from "../ui/xy_plot";
+import { stateKeys } from "../recording/keys";
+import { Latest } from "../ui/latest";
+import type { Context } from "../ui/view";
 import type { Drawn } from "./recording_time";
 
 type Kind = "all" | "one" | "average";
@@ -27,12 +29,10 @@ export class RecordingLoops {
   private drawn: readonly Drawn[] = [];
   private cycle = 0;
   private cycles = 0;
-  private asked: AbortController | null = null;
+  private readonly latest: Latest;
 
-  constructor(
-    private readonly api: Api,
-    private readonly complain: (error: unknown) => void,
-  ) {
+  constructor(private readonly context: Context) {
+    this.latest = new Latest(context.signal);
     this.kind = select(
       [
         { value: "all", text: "all cycles" },
@@ -40,9 +40,9 @@ export class RecordingLoops {
         { value: "average", text: "average" },
       ],
       "all",
-      () => void this.load(),
+      () => this.choose(),
     );
-    this.axis = select([], "", () => void this.load());
+    this.axis = select([], "", () => this.choose());
     this.root = element(
       "div",
       { class: "recording_loops" },
@@ -61,7 +61,6 @@ export class RecordingLoops {
   }
 
   end(): void {
-    this.asked?.abort();
     this.plot?.end();
   }
 
@@ -71,13 +70,43 @@ export class RecordingLoops {
     const own = drawn[0]?.recording;
     if (!own) return;
     if (own !== before) {
-      this.cycle = 0;
-      const chosen = own.cycles?.axis ?? 0;
-      this.axis.replaceChildren(
-        ...own.axes.map((it, k) => element("option", { value: String(k), selected: k === chosen }, it.name)),
-      );
+      this.axis.replaceChildren(...own.axes.map((it, k) => element("option", { value: String(k) }, it.name)));
+      this.take(own);
     }
     void this.load();
+  }
+
+  /** What the address says has changed. */
+  follow(): void {
+    const own = this.drawn[0]?.recording;
+    if (!own) return;
+    this.take(own);
+    void this.load();
+  }
+
+  private take(own: Recording): void {
+    const { state } = this.context;
+    const kind = state.get(stateKeys.loops) ?? (state.number(stateKeys.cycle) === null ? "all" : "one");
+    this.kind.value = kind === "one" || kind === "average" ? kind : "all";
+    this.axis.value = String(state.number(stateKeys.axis) ?? own.cycles?.axis ?? 0);
+    this.cycle = Math.max(0, (state.number(stateKeys.cycle) ?? 1) - 1);
+  }
+
+  /** By hand: a step of its own in the address. */
+  private choose(): void {
+    const own = this.drawn[0]?.recording.cycles?.axis ?? 0;
+    const axis = Number(this.axis.value);
+    this.context.state.set({ [stateKeys.axis]: axis === own ? null : axis }, "push");
+    this.keep();
+    void this.load();
+  }
+
+  private keep(): void {
+    const kind = this.kind.value;
+    this.context.state.set({
+      [stateKeys.loops]: kind === "all" ? null : kind,
+      [stateKeys.cycle]: kind === "one" ? this.cycle + 1 : null,
+    });
   }
 
   private step(by: number): void {
@@ -85,6 +114,7 @@ export class RecordingLoops {
     const width = this.kind.value === "one" ? 1 : atOnce;
     const last = Math.max(0, this.cycles - 1);
     this.cycle = Math.min(Math.max(0, this.cycle + by * width), last - (last % width));
+    this.keep();
     void this.load();
   }
 
@@ -96,19 +126,18 @@ export class RecordingLoops {
   }
 
   private async load(): Promise<void> {
-    this.asked?.abort();
-    const { signal } = (this.asked = new AbortController());
     const kind = this.kind.value as Kind;
     if (kind === "all") this.cycle -= this.cycle % atOnce;
     const first = kind === "average" ? 0 : this.cycle;
     const count = kind === "one" ? 1 : atOnce;
     try {
-      const answers = await Promise.all(this.drawn.map((it) => this.fetch(it.recording, first, count, signal)));
-      if (!signal.aborted) this.draw(answers, kind, first);
+      const answers = await this.latest.ask((signal) =>
+        Promise.all(this.drawn.map((it) => this.fetch(it.recording, first, count, signal))),
+      );
+      if (answers) this.draw(answers, kind, first);
     } catch (error) {
-      if (signal.aborted) return;
       this.text.textContent = "";
-      this.complain(error);
+      this.context.complain(error);
     }
   }
 
@@ -118,7 +147,7 @@ export class RecordingLoops {
     const axis = recording.axes.findIndex((it) => it.name === name);
     if (axis < 0) return Promise.resolve(null);
     const wanted = { id: recording.id, axis, first: first + 1, count }; // cycles are counted from 1
-    const answer = this.api.get<Loops>("/api/recording/loops", wanted, signal);
+    const answer = this.context.api.get<Loops>("/api/recording/loops", wanted, signal);
     return recording === own ? answer : answer.catch(() => null); // one laid over that has no cycles is left out
   }
 

@@ -34,8 +34,17 @@ export class RecordingTime {
   constructor(
     private readonly api: Api,
     private readonly complain: (error: unknown) => void,
+    /** The stretch that is shown has changed; whether it is the whole. */
+    private readonly moved: (from_s: number, to_s: number, whole: boolean) => void = () => {},
   ) {
-    this.stack = new TimeStack({ name: "The recording over time", timeLabel: "time [s]", changed: () => this.want() });
+    this.stack = new TimeStack({
+      name: "The recording over time",
+      timeLabel: "time [s]",
+      changed: ({ from, to, first, last }) => {
+        this.want();
+        this.moved(from, to, from <= first && to >= last);
+      },
+    });
     this.root = element("div", { class: "recording_time" }, this.stack.root, legend());
   }
 
@@ -64,6 +73,10 @@ export class RecordingTime {
 
   showAt(from_s: number, to_s: number): void {
     this.stack.range.show(from_s, to_s);
+  }
+
+  showAll(): void {
+    this.stack.range.whole();
   }
 
   private source(drawn: Drawn, traces: readonly Trace[], look: number): Source {

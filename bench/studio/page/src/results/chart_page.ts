@@ -6,7 +6,6 @@ import { SortableTable } from "../ui/sortable_table";
 import type { Context } from "../ui/view";
 import { ChartPlot } from "./chart_plot";
 import { ChoicePanel } from "./choice_panel";
-import type { JobList } from "./jobs";
 import { LawPanel } from "./law_panel";
 import { byName, lawBeside, recordingsFor, resultName, stabilityInWords, stableWord } from "./names";
 
@@ -84,7 +83,7 @@ export class ChartPage {
     private readonly workspace: Workspace,
     private readonly file: WorkspaceFile,
     private readonly chart: ChartFile,
-    jobs: JobList,
+    order: (path: string, body: Readonly<Record<string, unknown>>) => void,
   ) {
     this.law = new LawPanel(context);
     this.plot = new ChartPlot(chart, (index) => this.open(index));
@@ -93,7 +92,7 @@ export class ChartPage {
     const choice = new ChoicePanel(
       context,
       workspace,
-      its ? () => void jobs.order("/api/choose", { recording: its.id }, (id) => context.go("chart", id)) : null,
+      its ? () => order("/api/choose", { recording: its.id }) : null,
       (id, title) => void this.law.open(id, title),
     );
     const chosen = workspace.files
@@ -118,16 +117,10 @@ export class ChartPage {
         `Errors towards ${chart.reference}. JND ${withUnit(chart.jnd_n, "N")}; a tick is ${withUnit(1 / chart.rate_hz, "s")}.`,
         unjudged > 0 ? ` The stability of ${unjudged} of ${chart.points.length} points was not judged.` : null,
       ),
-      element(
-        "div",
-        { class: "two wide" },
-        this.plot.root,
-        element("div", { class: "stack" }, this.law.root, jobs.root),
-      ),
+      element("div", { class: "two wide" }, this.plot.root, this.law.root),
       choice.root,
       tableOf(chart.points, (point) => this.open(chart.points.indexOf(point))),
       ...chart.notes.map((it) => element("p", { class: "quiet" }, it)),
-      element("p", {}, element("a", { href: "#/chart" }, "All charts")),
     );
   }
 

@@ -61,7 +61,6 @@ export class FitPage {
       blamed ? element("p", {}, element("strong", {}, "What is to blame: "), `${blamed}.`) : null,
       list("Warnings", fit.warnings, "warnings"),
       list(`${refused.length} laws could not be fitted`, refused),
-      element("p", {}, element("a", { href: "#/fits" }, "All fits")),
       this.detail,
     );
     const first = fit.fits.find((it) => it.model === fit.choice.model) ?? fit.fits[0];

@@ -7,6 +7,7 @@ import type { Context, View } from "../ui/view";
 import { FitPage } from "../results/fit_page";
 import { JobList } from "../results/jobs";
 import { LawCheckboxes } from "../results/law_checkboxes";
+import { leadToTab } from "../results/of_recording/old_address";
 import { byName, resultName } from "../results/names";
 import { RecordingChoice } from "../results/order_form";
 
@@ -59,24 +60,24 @@ export const fits: View = {
     root.append(title);
     const jobs = new JobList(context, ["fit"]);
     let page: FitPage | null = null;
-    let ended = false;
+    const gone = (): boolean => context.signal.aborted;
     const show = async (): Promise<void> => {
       const { id } = context.place;
       const workspace = await context.api.get<Workspace>("/api/workspace");
       const files = workspace.files.filter((it) => it.kind === "fit").sort(byName);
+      if (gone() || (id && leadToTab(context, workspace, "fits", files))) return;
       const file = files.find((it) => it.id === id);
       if (file) {
         const fit = await context.api.get<FitFile>("/api/result", { id });
-        if (ended) return;
+        if (gone()) return;
         title.textContent = `Fit ${resultName(file)}`;
         page = new FitPage(context, workspace, file, fit);
         root.append(page.root);
         return;
       }
       const laws = await context.api.get<FittedLaw[]>("/api/laws/fitted");
-      if (ended) return;
-      if (id && !workspace.recordings.some((it) => it.id === id))
-        context.say("That fit is not in this folder any more.");
+      if (gone()) return;
+      if (id) context.say("That fit is not in this folder any more.");
       root.append(
         element(
           "div",
@@ -88,7 +89,6 @@ export const fits: View = {
     };
     show().catch(context.complain);
     return () => {
-      ended = true;
       jobs.end();
       page?.end();
     };

@@ -1,0 +1,9 @@
+import type { RecordingTab } from "../../ui/view";
+import { editorOf } from "../../views/editor";
+
+/** A law of segments, drawn over the averaged cycle. */
+export const lawTab: RecordingTab = {
+  name: "law",
+  title: "Law",
+  mount: (root, context, recording) => editorOf(root, context, recording),
+};
