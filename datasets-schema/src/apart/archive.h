@@ -10,6 +10,8 @@
 #include <variant>
 #include <vector>
 
+#include <kerf/schema/sweep_tables_file.h>
+
 #include "in_process.h"
 
 /// The schema's values as bytes, from one process of a program to another.
@@ -59,6 +61,11 @@ auto fields(Is<Session> auto& x) {
   return std::tie(x.uuid, x.created, x.software, x.subject, x.number, x.subjects, x.protocol, x.laws, x.key,
                   x.entries);
 }
+auto fields(Is<SweepNote> auto& x) { return std::tie(x.name, x.text); }
+auto fields(Is<SweepTexts> auto& x) { return std::tie(x.input, x.texts); }
+auto fields(Is<SweepColumn> auto& x) { return std::tie(x.name, x.unit, x.type); }
+auto fields(Is<SweepTable> auto& x) { return std::tie(x.name, x.rows, x.columns); }
+auto fields(Is<SweepTablesFacts> auto& x) { return std::tie(x.notes, x.texts, x.tables); }
 auto fields(Is<Violation> auto& x) { return std::tie(x.where, x.found, x.expected); }
 
 template <typename T>
