@@ -82,15 +82,7 @@ SweepBlock block_from(const json& given, const SweepPlan& plan) {
 }
 
 SweepPlan plan_from(const json& all, const fs::path& folder) {
-  SweepPlan plan;
-  plan.folder = folder;
-  const json& what = all.at("plan");
-  plan.verb = &sweep_verb_called(what.at("verb").get<std::string>());
-  plan.inputs = plan.verb->inputs();
-  for (const auto& [name, file] : what.at("files").items())
-    plan.files[name] = {.bytes = file.at("bytes").get<std::uintmax_t>(),
-                        .sha256 = file.at("sha256").get<std::string>()};
-  for (const json& given : what.at("cells")) plan.blocks.push_back(block_from(given, plan));
+  SweepPlan plan = plan_from_json(all.at("plan"), folder);
   plan.shards = all.at("shards").get<std::uint64_t>();
   plan.limits = {.seconds = all.at("limits").at("seconds").get<double>(),
                  .megabytes = all.at("limits").at("megabytes").get<std::size_t>()};
@@ -101,6 +93,18 @@ SweepPlan plan_from(const json& all, const fs::path& folder) {
 }
 
 }  // namespace
+
+SweepPlan plan_from_json(const json& what, const fs::path& folder) {
+  SweepPlan plan;
+  plan.folder = folder;
+  plan.verb = &sweep_verb_called(what.at("verb").get<std::string>());
+  plan.inputs = plan.verb->inputs();
+  for (const auto& [name, file] : what.at("files").items())
+    plan.files[name] = {.bytes = file.at("bytes").get<std::uintmax_t>(),
+                        .sha256 = file.at("sha256").get<std::string>()};
+  for (const json& given : what.at("cells")) plan.blocks.push_back(block_from(given, plan));
+  return plan;
+}
 
 fs::path PlanFile::shards_folder() const {
   std::string name = file.filename().string();

@@ -46,6 +46,11 @@ void write_plan(const std::filesystem::path& file, const SweepPlan& plan,
 ///         it was written.
 [[nodiscard]] PlanFile read_plan(const std::filesystem::path& file);
 
+/// What SweepPlan::as_json() says of a plan, which a merged sweep keeps: no shards and no limits.
+/// @throws nlohmann::json::exception, std::invalid_argument for what it does not say.
+[[nodiscard]] SweepPlan plan_from_json(const nlohmann::ordered_json& what,
+                                       const std::filesystem::path& folder);
+
 /// That the files of some cells are what they were when the sweep was planned: each is hashed once.
 /// @throws std::invalid_argument that names the first that is missing or another one.
 void require_planned_files(const SweepPlan& plan, const ShardRange& range);
