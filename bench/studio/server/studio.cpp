@@ -17,6 +17,7 @@
 #include "server/session_routes.h"
 #include "server/studio_page.h"
 #include "studies/study_routes.h"
+#include "sweeps/sweep_routes.h"
 #include "views/recording_routes.h"
 #include "views/recording_views.h"
 #include "workspace/page_uri.h"
@@ -50,6 +51,7 @@ class Studio::State {
     add_editor_routes(routes_, workspace_, [this](const LawFile& law) { render(law); });
     add_result_routes(routes_, workspace_, jobs_);
     add_study_routes(routes_, workspace_);
+    add_sweep_routes(routes_, workspace_);
     add_session_routes(routes_, workspace_, sessions_,
                        {.key_file = options.key_file,
                         .uri_of = [this](const std::string& uri) { return uri_of(uri); },

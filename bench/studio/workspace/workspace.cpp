@@ -34,7 +34,8 @@ constexpr std::array endings{Ending{".law.toml", FileKind::law}, Ending{".suite.
 constexpr std::array whole_names{
     Ending{"fit.json", FileKind::fit},       Ending{"chart.json", FileKind::chart},
     Ending{"choose.json", FileKind::choice}, Ending{"stability.json", FileKind::stability},
-    Ending{"study.toml", FileKind::study},   Ending{"identify.json", FileKind::device}};
+    Ending{"study.toml", FileKind::study},   Ending{"identify.json", FileKind::device},
+    Ending{"sweep.h5", FileKind::sweep}};
 
 /// By its name; a file of HDF5 is taken for a recording until it was looked into.
 std::optional<FileKind> kind_of(const std::string& name) {
@@ -62,9 +63,9 @@ bool is_name(std::string_view name) {
 }  // namespace
 
 std::string_view name_of(FileKind kind) noexcept {
-  constexpr std::array<std::string_view, 12> names{"recording", "law",      "session",   "fit",
-                                                   "chart",     "choice",   "stability", "suite",
-                                                   "scene",     "protocol", "study",     "device"};
+  constexpr std::array<std::string_view, 13> names{"recording", "law",       "session", "fit",   "chart",
+                                                   "choice",    "stability", "suite",   "scene", "protocol",
+                                                   "study",     "device",    "sweep"};
   return names[static_cast<std::size_t>(kind)];
 }
 
@@ -82,7 +83,7 @@ std::map<std::string, WorkspaceEntry> Workspace::known_files() const {
 }
 
 bool Workspace::look_into(WorkspaceEntry& entry, const std::map<std::string, WorkspaceEntry>& known) {
-  if (!entry.name.ends_with(".h5")) return true;
+  if (entry.kind != FileKind::recording || !entry.name.ends_with(".h5")) return true;
   const auto before = known.find(entry.id);
   if (before != known.end() && before->second.bytes == entry.bytes &&
       before->second.modified == entry.modified) {

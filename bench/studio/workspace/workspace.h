@@ -23,7 +23,8 @@ enum class FileKind : std::uint8_t {
   scene,      ///< .scene.toml
   protocol,   ///< .protocol.toml
   study,      ///< study.toml
-  device      ///< identify.json
+  device,     ///< identify.json
+  sweep       ///< sweep.h5 that kerf sweep merge wrote
 };
 [[nodiscard]] std::string_view name_of(FileKind kind) noexcept;
 
