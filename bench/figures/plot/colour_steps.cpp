@@ -37,8 +37,9 @@ Rgb viridis_at(double share) {
   return {.red = mixed(&Rgb::red), .green = mixed(&Rgb::green), .blue = mixed(&Rgb::blue)};
 }
 
-Rgb colour_at(std::size_t step, std::size_t steps) {
-  return viridis_at(steps < 2 ? 0.5 : static_cast<double>(step) / static_cast<double>(steps - 1));
+Rgb colour_at(std::size_t step, std::size_t steps, double lightest) {
+  return viridis_at(lightest *
+                    (steps < 2 ? 0.5 : static_cast<double>(step) / static_cast<double>(steps - 1)));
 }
 
 /// Relative luminance, as contrast is reckoned with on pages.
@@ -89,14 +90,14 @@ std::size_t ColourSteps::step_of(double value) const noexcept {
 }
 
 std::string ColourSteps::colour_of_step(std::size_t step) const {
-  const Rgb colour = colour_at(step, steps());
+  const Rgb colour = colour_at(step, steps(), lightest);
   return fmt::format("#{:02x}{:02x}{:02x}", static_cast<int>(std::lround(colour.red)),
                      static_cast<int>(std::lround(colour.green)), static_cast<int>(std::lround(colour.blue)));
 }
 
 std::string ColourSteps::ink_on_step(std::size_t step) const {
   // Where black and white have the same contrast.
-  return luminance(colour_at(step, steps())) > 0.179 ? "#000000" : "#ffffff";
+  return luminance(colour_at(step, steps(), lightest)) > 0.179 ? "#000000" : "#ffffff";
 }
 
 ColourSteps round_steps(std::string label, double smallest, double largest) {

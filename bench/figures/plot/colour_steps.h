@@ -10,6 +10,7 @@ namespace kerf::bench {
 struct ColourSteps {
   std::string label;           ///< with its unit
   std::vector<double> bounds;  ///< ascending, one more than there are colours
+  double lightest = 1.0;       ///< share of the scale that is used: thin lines on white need less than all
 
   [[nodiscard]] std::size_t steps() const noexcept { return bounds.size() - 1; }
   /// The step of a number; beyond the ends the first or last one.

@@ -32,8 +32,8 @@ struct Layout {
   static constexpr int right = 20;
   static constexpr int gap = 14;
   static constexpr int top = 34;
-  static constexpr int title_height = 24;
-  static constexpr int below = 132;
+  static constexpr int title_height = 28;
+  static constexpr int below = 156;
   int width;
   std::size_t across;
   std::size_t down;
@@ -167,7 +167,7 @@ std::string legend_of(const HeatMap& map) {
 
 void add_scale(std::string& script, const HeatMap& map, const Layout& layout) {
   const ColourSteps& scale = map.colours;
-  const double top = layout.height - 62;
+  const double top = layout.height - 80;
   script += "unset object\nunset label\nset title ''\n";
   script += layout.margins(layout.left, layout.width - Layout::right, top, top + 16);
   auto out = std::back_inserter(script);
@@ -209,7 +209,7 @@ std::string script_of(const HeatMap& map, const Layout& layout, const std::strin
       "set label {} at screen 0.5, screen {:.6f} center font 'DejaVu Sans,14'\nset label {} at screen 0.5, "
       "screen {:.6f} center font 'DejaVu Sans,12'\nplot -9 notitle\nunset multiplot\n",
       gnuplot_text(map.title), 1.0 - 18.0 / layout.height, gnuplot_text(legend_of(map)),
-      74.0 / layout.height);
+      94.0 / layout.height);
   return script;
 }
 

@@ -14,13 +14,17 @@ namespace {
 
 constexpr double place_of_unknown = -0.12;
 
-/// Lines of one look as one block, broken between them.
-void add_block(std::string& script, const std::string& name, const std::vector<const ParallelLine*>& lines) {
+/// Lines as one block, broken between them, each point with the colour of its line.
+void add_block(std::string& script, const std::string& name, const std::vector<const ParallelLine*>& lines,
+               const ColourSteps& scale) {
   fmt::format_to(std::back_inserter(script), "${} << EOD\n", name);
   for (const ParallelLine* const line : lines) {
+    const std::string colour =
+        std::isnan(line->value) ? "#d55e00" : scale.colour_of_step(scale.step_of(line->value));
     for (std::size_t axis = 0; axis < line->at.size(); ++axis)
-      fmt::format_to(std::back_inserter(script), "{} {:.4f}\n", axis,
-                     std::isnan(line->at[axis]) ? place_of_unknown : line->at[axis]);
+      fmt::format_to(std::back_inserter(script), "{} {:.4f} {}\n", axis,
+                     std::isnan(line->at[axis]) ? place_of_unknown : line->at[axis],
+                     std::stoi(colour.substr(1), nullptr, 16));
     script += "\n";
   }
   script += "EOD\n";
@@ -53,34 +57,43 @@ std::string script_of(const ParallelAxes& axes, const std::string& output) {
       "style textbox opaque noborder fillcolor rgb '#ffffff' margins 0.3,0.2\nset xrange [0:{}]\nset yrange "
       "[-0.16:1.2]\nset key below center horizontal samplen 1.5 font 'DejaVu Sans,11' maxrows 2\n",
       axes.width_px, axes.height_px, gnuplot_text(output), gnuplot_text(axes.title), axes.axes.size() - 1);
-  std::vector<std::vector<const ParallelLine*>> of_step(axes.colours.steps());
+  std::vector<bool> of_step(axes.colours.steps(), false);
+  std::vector<const ParallelLine*> known;
   std::vector<const ParallelLine*> failed;
   std::vector<bool> has_unknown(axes.axes.size(), false);
   for (const ParallelLine& line : axes.lines) {
     if (line.is_failed || std::isnan(line.value)) {
       failed.push_back(&line);
     } else {
-      of_step[axes.colours.step_of(line.value)].push_back(&line);
+      known.push_back(&line);
+      of_step[axes.colours.step_of(line.value)] = true;
     }
     for (std::size_t axis = 0; axis < line.at.size(); ++axis)
       if (std::isnan(line.at[axis])) has_unknown[axis] = true;
   }
   for (std::size_t i = 0; i < axes.axes.size(); ++i) add_axis(script, axes.axes[i], i, has_unknown[i]);
+  // All in their own order, so that no step hides the others; the legend's lines are beyond the axes.
   std::string plot;
-  const auto add = [&](const std::string& name, const std::vector<const ParallelLine*>& lines,
-                       const std::string& look, const std::string& title) {
-    if (lines.empty()) return;
-    add_block(script, name, lines);
-    plot += fmt::format("{}${} with lines {} title {}", plot.empty() ? "plot " : ", ", name, look,
-                        gnuplot_text(title));
-  };
-  for (std::size_t step = 0; step < of_step.size(); ++step) {
-    const std::string title = fmt::format("{}{:.3g} to {:.3g}", step == 0 ? axes.colours.label + " " : "",
-                                          axes.colours.bounds[step], axes.colours.bounds[step + 1]);
-    add(fmt::format("s{}", step), of_step[step],
-        fmt::format("lw 0.8 lc rgb '{}'", axes.colours.colour_of_step(step)), title);
+  const auto add = [&](const std::string& what) { plot += (plot.empty() ? "plot " : ", ") + what; };
+  if (!known.empty()) {
+    add_block(script, "known", known, axes.colours);
+    add("$known using 1:2:3 with lines lw 0.8 lc rgb variable notitle");
   }
-  add("failed", failed, "lw 1.2 dt 2 lc rgb '#d55e00'", "no number");
+  for (std::size_t step = 0; step < of_step.size(); ++step) {
+    if (!of_step[step]) continue;
+    const std::string title =
+        fmt::format("{}{:.3g} to {:.3g}",
+                    std::ranges::find(of_step, true) == of_step.begin() + static_cast<std::ptrdiff_t>(step)
+                        ? axes.colours.label + " "
+                        : "",
+                    axes.colours.bounds[step], axes.colours.bounds[step + 1]);
+    add(fmt::format("-9 with lines lw 2 lc rgb '{}' title {}", axes.colours.colour_of_step(step),
+                    gnuplot_text(title)));
+  }
+  if (!failed.empty()) {
+    add_block(script, "failed", failed, axes.colours);
+    add("$failed with lines lw 1.2 dt 2 lc rgb '#d55e00' title 'no number'");
+  }
   return script + (plot.empty() ? "plot -9 notitle" : plot) + "\n";
 }
 

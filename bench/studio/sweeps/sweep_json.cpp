@@ -12,15 +12,13 @@
 namespace kerf::bench {
 namespace {
 
-using json = nlohmann::ordered_json;
-
-json column_json(SweepAtlas& atlas, std::size_t table, std::size_t number) {
+nlohmann::ordered_json column_json(SweepAtlas& atlas, std::size_t table, std::size_t number) {
   const AtlasColumn& column = atlas.tables()[table].columns[number];
   return {{"name", column.name},      {"unit", column.unit},   {"what", column.what},
           {"input", column.is_input}, {"texts", column.texts}, {"values", json_numbers(column.values)}};
 }
 
-json axis_json(const AtlasAxis& axis) {
+nlohmann::ordered_json axis_json(const AtlasAxis& axis) {
   return {{"column", axis.column},
           {"unit", axis.unit},
           {"names", axis.names},
@@ -29,7 +27,7 @@ json axis_json(const AtlasAxis& axis) {
           {"logarithmic", axis.is_logarithmic()}};
 }
 
-json tile_json(const AtlasTile& tile) {
+nlohmann::ordered_json tile_json(const AtlasTile& tile) {
   return {
       {"computed", tile.computed}, {"known", tile.known}, {"failed", tile.failed}, {"missing", tile.missing}};
 }
@@ -44,7 +42,7 @@ void append_counts(std::string& text, const char* name, const std::vector<AtlasT
 }
 
 /// A JSON object whose last brace is taken off, for what is long.
-std::string begun(const json& object) {
+std::string begun(const nlohmann::ordered_json& object) {
   std::string text = object.dump();
   text.pop_back();
   return text;
@@ -53,14 +51,14 @@ std::string begun(const json& object) {
 }  // namespace
 
 std::string sweep_json(SweepAtlas& atlas) {
-  json all{{"verb", atlas.plan().verb->name},
-           {"what", atlas.plan().verb->what},
-           {"software", atlas.software()},
-           {"cells", atlas.plan().cells()},
-           {"tables", json::array()}};
+  nlohmann::ordered_json all{{"verb", atlas.plan().verb->name},
+                             {"what", atlas.plan().verb->what},
+                             {"software", atlas.software()},
+                             {"cells", atlas.plan().cells()},
+                             {"tables", nlohmann::ordered_json::array()}};
   for (std::size_t table = 0; table < atlas.tables().size(); ++table) {
     const AtlasTable& of = atlas.tables()[table];
-    json columns = json::array();
+    nlohmann::ordered_json columns = nlohmann::ordered_json::array();
     for (std::size_t i = 0; i < of.columns.size(); ++i) columns.push_back(column_json(atlas, table, i));
     all["tables"].push_back({{"name", of.name},
                              {"computed", of.computed},
@@ -72,7 +70,8 @@ std::string sweep_json(SweepAtlas& atlas) {
 }
 
 std::string answer_json(const AtlasAnswer& answer) {
-  json about{{"unit", answer.unit}, {"all", tile_json(answer.all)}, {"axes", json::array()}};
+  nlohmann::ordered_json about{
+      {"unit", answer.unit}, {"all", tile_json(answer.all)}, {"axes", nlohmann::ordered_json::array()}};
   for (const AtlasAxis& axis : answer.axes) about["axes"].push_back(axis_json(axis));
   std::string text = begun(about);
   std::vector<double> values;
@@ -87,7 +86,8 @@ std::string answer_json(const AtlasAnswer& answer) {
 }
 
 std::string sample_json(const AtlasSample& sample) {
-  json about{{"of", sample.of}, {"state", sample.state}, {"columns", json::array()}};
+  nlohmann::ordered_json about{
+      {"of", sample.of}, {"state", sample.state}, {"columns", nlohmann::ordered_json::array()}};
   for (const AtlasColumn& column : sample.columns) about["columns"].push_back(column.name);
   std::string text = begun(about) + ",\"values\":[";
   for (std::size_t i = 0; i < sample.values.size(); ++i) {

@@ -131,7 +131,7 @@ AtlasAnswer answer(SweepAtlas& atlas, const AtlasQuestion& question) {
   AtlasAnswer answer{.axes = {}, .tiles = {}, .unit = unit_of(atlas, table, question), .all = {}};
   std::vector<PartedRows> parted;
   for (const std::string& column : question.by) {
-    parted.push_back(parted_rows(atlas, table, column, question.bins));
+    parted.push_back(parted_rows(atlas, table, column, question));
     answer.axes.push_back(parted.back().axis);
   }
   require_few_tiles(answer);

@@ -92,21 +92,21 @@ std::string in_words(const std::vector<AtlasCondition>& conditions) {
   return text;
 }
 
-AtlasQuestion question_from_json(const json& json) try {
+AtlasQuestion question_from_json(const nlohmann::json& given) try {
   AtlasQuestion question;
-  question.table = json.at("table").get<std::string>();
-  question.by = json.at("by").get<std::vector<std::string>>();
-  if (json.contains("share")) {
+  question.table = given.at("table").get<std::string>();
+  question.by = given.at("by").get<std::vector<std::string>>();
+  if (given.contains("share")) {
     question.statistic = AtlasStatistic::share;
-    question.share = parse_conditions(json.at("share").get<std::string>());
+    question.share = parse_conditions(given.at("share").get<std::string>());
   } else {
-    question.of = json.at("of").get<std::string>();
-    question.statistic = statistic_called(json.value("statistic", std::string("mean")));
+    question.of = given.at("of").get<std::string>();
+    question.statistic = statistic_called(given.value("statistic", std::string("mean")));
     if (question.is_share()) throw std::invalid_argument("a share needs its condition as 'share'");
   }
-  question.bins = json.value("bins", AtlasQuestion::usual_bins);
-  if (json.contains("where")) {
-    for (const auto& [column, value] : json.at("where").items())
+  question.bins = given.value("bins", AtlasQuestion::usual_bins);
+  if (given.contains("where")) {
+    for (const auto& [column, value] : given.at("where").items())
       question.where.push_back(filter_from(column, value));
   }
   if (question.by.size() > AtlasQuestion::most_parts || question.bins < 2 || question.bins > 400)

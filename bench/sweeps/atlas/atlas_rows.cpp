@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -31,20 +32,47 @@ std::vector<double> numbers_of(SweepAtlas& atlas, std::size_t table, const std::
   return numbers;
 }
 
-void filter_listed(const AtlasColumn& about, const AtlasValues& values, const AtlasFilter& filter,
-                   std::vector<std::uint8_t>& counts) {
+/// Of each value of a listed input 1 where a filter lets it through.
+std::vector<std::uint8_t> values_that_count(const AtlasColumn& about, const AtlasFilter& filter) {
+  for (const std::string& value : filter.among) {
+    if (std::ranges::count(about.texts, value) == 0)
+      throw std::invalid_argument(fmt::format("{} has no value '{}' in this sweep", about.name, value));
+  }
   std::vector<std::uint8_t> counted(about.texts.size(), 1);
   for (std::size_t i = 0; i < counted.size(); ++i) {
-    if (!filter.among.empty()) {
-      counted[i] = std::ranges::count(filter.among, about.texts[i]) > 0 ? 1 : 0;
-    } else if (!about.values.empty()) {
-      counted[i] = about.values[i] >= filter.lower && about.values[i] <= filter.upper ? 1 : 0;
-    } else {  // a text: its place, as parallel axes have it
-      const auto place = static_cast<double>(i);
-      counted[i] = place >= filter.lower && place <= filter.upper ? 1 : 0;
-    }
+    // A text stands at its place, as parallel axes have it.
+    const double number = about.values.empty() ? static_cast<double>(i) : about.values[i];
+    const bool counts = filter.among.empty() ? number >= filter.lower && number <= filter.upper
+                                             : std::ranges::count(filter.among, about.texts[i]) > 0;
+    counted[i] = counts ? 1 : 0;
   }
-  for (std::size_t row = 0; row < counts.size(); ++row) counts[row] &= counted[values.codes[row]];
+  return counted;
+}
+
+/// A listed axis, and of each value its part.
+struct ListedParts {
+  AtlasAxis axis;
+  std::vector<std::uint32_t> part_of;
+};
+ListedParts listed_parts(const AtlasColumn& about, const AtlasQuestion& question) {
+  std::vector<std::uint8_t> counted(about.texts.size(), 1);
+  for (const AtlasFilter& filter : question.where) {
+    if (filter.column != about.name) continue;
+    const std::vector<std::uint8_t> by_this = values_that_count(about, filter);
+    for (std::size_t i = 0; i < counted.size(); ++i) counted[i] &= by_this[i];
+  }
+  ListedParts listed{
+      .axis = {.column = about.name, .unit = about.unit, .names = {}, .values = {}, .edges = {}},
+      .part_of = std::vector<std::uint32_t>(counted.size(), in_no_part)};
+  for (std::size_t i = 0; i < counted.size(); ++i) {
+    if (counted[i] == 0) continue;
+    listed.part_of[i] = static_cast<std::uint32_t>(listed.axis.names.size());
+    listed.axis.names.push_back(about.texts[i]);
+    if (!about.values.empty()) listed.axis.values.push_back(about.values[i]);
+  }
+  if (listed.axis.names.empty())
+    throw std::invalid_argument(fmt::format("the filters leave no value of {}", about.name));
+  return listed;
 }
 
 bool holds(AtlasCondition::Relation relation, double left, double right) {
@@ -84,7 +112,8 @@ std::vector<std::uint8_t> rows_that_count(SweepAtlas& atlas, std::size_t table,
     const AtlasColumn& about = of.columns[column];
     const auto values = atlas.values(table, column);
     if (about.is_listed()) {
-      filter_listed(about, *values, filter, counts);
+      const std::vector<std::uint8_t> counted = values_that_count(about, filter);
+      for (std::size_t row = 0; row < counts.size(); ++row) counts[row] &= counted[values->codes[row]];
       continue;
     }
     if (!filter.among.empty())
@@ -100,21 +129,24 @@ std::vector<std::uint8_t> rows_that_count(SweepAtlas& atlas, std::size_t table,
   return counts;
 }
 
-PartedRows parted_rows(SweepAtlas& atlas, std::size_t table, const std::string& name, std::size_t bins) {
+PartedRows parted_rows(SweepAtlas& atlas, std::size_t table, const std::string& name,
+                       const AtlasQuestion& question) {
   const AtlasTable& of = atlas.tables().at(table);
   const std::size_t column = of.column_called(name);
   const AtlasColumn& about = of.columns[column];
-  PartedRows parted{
-      .axis = {.column = name, .unit = about.unit, .names = about.texts, .values = about.values, .edges = {}},
-      .part = std::vector<std::uint32_t>(of.cells(), in_no_part)};
+  PartedRows parted{.axis = {.column = name, .unit = about.unit, .names = {}, .values = {}, .edges = {}},
+                    .part = std::vector<std::uint32_t>(of.cells(), in_no_part)};
   const auto values = atlas.values(table, column);
   if (about.is_listed()) {
-    std::ranges::copy(values->codes, parted.part.begin());
+    ListedParts listed = listed_parts(about, question);
+    parted.axis = std::move(listed.axis);
+    for (std::size_t row = 0; row < parted.part.size(); ++row)
+      parted.part[row] = listed.part_of[values->codes[row]];
     return parted;
   }
   const AtlasSpan span = span_of(atlas, table, column);
   if (span.known == 0) throw std::invalid_argument(fmt::format("no cell has a number in {}", name));
-  parted.axis.edges = edges_of(span, span.smallest < span.largest ? bins : 1);
+  parted.axis.edges = edges_of(span, span.smallest < span.largest ? question.bins : 1);
   const std::vector<double>& edges = parted.axis.edges;
   for (std::size_t row = 0; row < values->numbers.size(); ++row) {
     const double number = values->numbers[row];

@@ -13,14 +13,14 @@ namespace kerf::bench {
 [[nodiscard]] std::vector<std::uint8_t> rows_that_count(SweepAtlas& atlas, std::size_t table,
                                                         const std::vector<AtlasFilter>& filters);
 
-/// The part that each cell of a table is in.
+/// The part that each cell of a table is in. An axis has no part for a value that filters keep out.
 inline constexpr std::uint32_t in_no_part = 0xffffffffU;
 struct PartedRows {
   AtlasAxis axis;
   std::vector<std::uint32_t> part;  ///< of each cell; in_no_part: its number is not known
 };
 [[nodiscard]] PartedRows parted_rows(SweepAtlas& atlas, std::size_t table, const std::string& column,
-                                     std::size_t bins);
+                                     const AtlasQuestion& question);
 
 /// The number of each computed cell that a question is about: of a share 1 or 0. NaN is not known.
 [[nodiscard]] std::vector<double> asked_numbers(SweepAtlas& atlas, std::size_t table,

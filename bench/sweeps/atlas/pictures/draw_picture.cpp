@@ -19,7 +19,7 @@
 namespace kerf::bench {
 namespace {
 
-constexpr std::size_t most_lines = 700;
+constexpr std::size_t most_lines = 300;
 
 std::string what_is_shown(const AtlasQuestion& question, const std::string& unit) {
   if (question.is_share()) return fmt::format("share of cells with {}", in_words(question.share));
@@ -164,9 +164,11 @@ DrawnPicture draw_lines(SweepAtlas& atlas, const AtlasPicture& picture) {
     }
     points.move_to(chart);
   }
-  if (!numbered && !x.names.empty())
+  if (!numbered && !x.names.empty()) {
+    chart.x_range = {-0.5, static_cast<double>(x.parts()) - 0.5};
     for (std::size_t part = 0; part < x.parts(); ++part)
-      chart.x_ticks.push_back({.at = static_cast<double>(part), .name = x.names[part]});
+      chart.x_ticks.push_back({.at = static_cast<double>(part), .name = name_of_part(x, part)});
+  }
   add_nominal(chart, picture.nominal);
   std::string caption = counts_in_words(found);
   if (picture.question.is_share()) caption += " Strokes are exact 99.9 % intervals of a share.";
@@ -241,6 +243,7 @@ DrawnPicture draw_parallel(SweepAtlas& atlas, const AtlasPicture& picture) {
           ? ColourSteps{.label = with_unit(question.of, taken.columns.back().unit), .bounds = picture.steps}
           : round_steps(with_unit(question.of, taken.columns.back().unit), std::min(smallest, largest),
                         std::max(smallest, largest));
+  axes.colours.lightest = 0.8;
   return {.svg = draw(axes),
           .caption = fmt::format("{} of {} cells, taken by chance, a line each. Below an axis: no number.",
                                  taken.state.size(), taken.of)};

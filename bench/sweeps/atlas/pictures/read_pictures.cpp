@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <array>
+#include <functional>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -92,7 +94,8 @@ void read_parts(const Place& place, const toml::table& table, AtlasPicture& pict
   picture.question.by.push_back(x);
   const bool is_map = picture.kind == Kind::map;
   if (is_map == y.empty())
-    place.refuse(table, is_map ? "a map needs 'y', a column" : "lines have no 'y'; 'of' is what they show");
+    place.refuse(table, "{}",
+                 is_map ? "a map needs 'y', a column" : "lines have no 'y'; 'of' is what they show");
   if (is_map) picture.question.by.push_back(y);
   for (std::string& one : texts_in(place, table, "by")) picture.question.by.push_back(std::move(one));
   if (picture.question.by.size() > (is_map ? 4U : 2U))

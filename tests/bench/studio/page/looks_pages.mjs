@@ -8,6 +8,7 @@ import { audit } from "./accessibility.mjs";
 import { expect, expectEqual, expectNoComplaints, openPage, until } from "./harness.mjs";
 import { makePunch } from "./recordings_pages.mjs";
 import { makeStudy } from "./study_pages.mjs";
+import { makeSweep } from "./sweep_pages.mjs";
 
 /** A workspace in which every page has something to show. */
 async function furnish(studio) {
@@ -18,6 +19,7 @@ async function furnish(studio) {
   studio.makeSession(protocol);
   await makePunch(studio);
   await makeStudy(studio);
+  await makeSweep(studio);
   const search = ["--max-force", "2", "--z-width", "--rungs", "3", "--repeats", "1", "--resolution", "0.2"];
   studio.kerfOrThrow(
     "identify",
@@ -48,6 +50,7 @@ async function furnish(studio) {
     punch: await studio.id("recordings", "punch.h5"),
     device: await studio.id("files", "axis/identify.json"),
     study: (await studio.api("/api/studies")).json[0].id,
+    sweep: await studio.id("files", "walls.merged/sweep.h5"),
     fit: await work("/api/fit", { recording, axis: "theta", models: ["kelvin", "exponential", "piecewise"], folds: 2 }),
     chart: await work("/api/chart", { recording, axis: "theta", models: ["kelvin", "exponential"] }),
     stability: await work("/api/stability", { device: "sim:scissors", rate_hz: 1000, grip: "light", cells: 40 }),
@@ -78,6 +81,7 @@ export const tests = {
       device: `devices/${ids.device}`,
       flags: `recordings/${ids.punch}`,
       study: `studies/${ids.study}`,
+      sweep: `sweeps/${ids.sweep}?by=mass`,
     };
     const complaints = [];
     for (const colorScheme of ["light", "dark"]) {
@@ -97,6 +101,7 @@ export const tests = {
         if (name === "scope") await page.waitForTimeout(5500);
         else await settled(page);
         if (name === "study") await page.waitForFunction(() => document.querySelectorAll(".small_plot").length === 5);
+        if (name === "sweep") await page.waitForSelector("g.brush .overlay");
         await look(name);
         if (name === "flags") {
           await page.click("#tab_worth");
@@ -113,7 +118,7 @@ export const tests = {
   async "the page is less than 150 kB"({ studio }) {
     await studio.serve();
     let bytes = 0;
-    for (const path of ["/", "/studio.js", "/studio.css", "/icon.svg"]) {
+    for (const path of ["/", "/studio.js", "/parallel.js", "/studio.css", "/icon.svg"]) {
       const answer = await fetch(studio.origin + path, { headers: { "X-Kerf-Token": studio.token } });
       bytes += gzipSync(Buffer.from(await answer.arrayBuffer())).length;
     }

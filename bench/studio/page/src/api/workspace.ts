@@ -43,7 +43,7 @@ export interface ApparatusItem {
 export interface WorkspaceFile {
   id: string;
   name: string;
-  kind: "fit" | "chart" | "choice" | "stability" | "suite" | "scene" | "protocol" | "study" | "device";
+  kind: "fit" | "chart" | "choice" | "stability" | "suite" | "scene" | "protocol" | "study" | "device" | "sweep";
 }
 
 export interface Workspace {

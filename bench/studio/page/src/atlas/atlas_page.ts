@@ -6,7 +6,16 @@ import type { Context } from "../ui/view";
 import { controls, filterPanel } from "./controls";
 import { HeatMaps } from "./heat_maps";
 import { ParallelPlot } from "./parallel/parallel_plot";
-import { choiceIn, measureInWords, questionOf, results, variedInputs, writeChoice, type Choice } from "./question";
+import {
+  choiceIn,
+  filtered,
+  measureInWords,
+  questionOf,
+  results,
+  variedInputs,
+  writeChoice,
+  type Choice,
+} from "./question";
 
 const most_lines = 1200;
 
@@ -33,11 +42,7 @@ export class AtlasPage {
       context.api.token,
       (column, filter) => {
         const choice = choiceIn(context.state, sweep);
-        if (!choice) return;
-        const where = { ...choice.where };
-        if (filter) where[column] = filter;
-        else delete where[column];
-        this.choose({ ...choice, where });
+        if (choice) this.choose(filtered(choice, column, filter));
       },
       context.complain,
     );
@@ -69,15 +74,23 @@ export class AtlasPage {
   private show(): void {
     const choice = choiceIn(this.context.state, this.sweep);
     if (!choice) return;
-    this.fill(this.choosing, controls(this.sweep, choice, (next) => this.choose(next)));
-    this.fill(this.filtering, filterPanel(choice, (next) => this.choose(next)));
+    this.fill(
+      this.choosing,
+      controls(this.sweep, choice, (next) => this.choose(next)),
+    );
+    this.fill(
+      this.filtering,
+      filterPanel(choice, (next) => this.choose(next)),
+    );
     this.ask(choice).catch(this.context.complain);
     this.askLines(choice).catch(this.context.complain);
   }
 
   /** New controls in place of those before; what had the focus has it again. */
   private fill(place: HTMLElement, content: HTMLElement): void {
-    const controlsOf = (of: HTMLElement): HTMLElement[] => [...of.querySelectorAll<HTMLElement>("select, input, button, summary")];
+    const controlsOf = (of: HTMLElement): HTMLElement[] => [
+      ...of.querySelectorAll<HTMLElement>("select, input, button, summary"),
+    ];
     const open = [...place.querySelectorAll("details")].map((it) => it.open);
     const had = controlsOf(place).findIndex((it) => it === document.activeElement);
     place.replaceChildren(content);

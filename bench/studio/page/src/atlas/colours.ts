@@ -53,8 +53,17 @@ function logarithmicBounds(smallest: number, largest: number): number[] {
   return all.slice(first, last + 1);
 }
 
-/** Round steps that hold all numbers; tenths where they are shares. */
-export function stepsOf(numbers: readonly (number | null)[], share: boolean): Steps {
+/** The part of the scale that thin lines are seen by on the page's ground, in light and dark. */
+export function rangeOfLines(): [number, number] {
+  return matchMedia("(prefers-color-scheme: dark)").matches ? [0.3, 1] : [0, 0.8];
+}
+
+/** Round steps that hold all numbers; tenths where they are shares. Of the scale they take the part from `range`. */
+export function stepsOf(
+  numbers: readonly (number | null)[],
+  share: boolean,
+  range: readonly [number, number] = [0, 1],
+): Steps {
   let smallest = Infinity;
   let largest = -Infinity;
   for (const it of numbers) {
@@ -64,11 +73,13 @@ export function stepsOf(numbers: readonly (number | null)[], share: boolean): St
   }
   let bounds: number[];
   if (share || !(smallest <= largest)) bounds = Array.from({ length: 11 }, (_, i) => i / 10);
-  else if (smallest === largest) bounds = [smallest - (Math.abs(smallest) / 2 || 1), largest + (Math.abs(largest) / 2 || 1)];
+  else if (smallest === largest)
+    bounds = [smallest - (Math.abs(smallest) / 2 || 1), largest + (Math.abs(largest) / 2 || 1)];
   else if (smallest > 0 && largest / smallest > 100) bounds = logarithmicBounds(smallest, largest);
   else bounds = linearBounds(smallest, largest);
   const steps = bounds.length - 1;
-  return { bounds, colours: Array.from({ length: steps }, (_, i) => colourAt(steps < 2 ? 0.5 : i / (steps - 1))) };
+  const at = (i: number): number => range[0] + (range[1] - range[0]) * (steps < 2 ? 0.5 : i / (steps - 1));
+  return { bounds, colours: Array.from({ length: steps }, (_, i) => colourAt(at(i))) };
 }
 
 /** Null where there is no number. */

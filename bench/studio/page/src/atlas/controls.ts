@@ -1,6 +1,6 @@
 import type { Sweep, SweepFilter } from "../api/sweeps";
 import { button, element, labelled, select } from "../ui/dom";
-import { results, statistics, variedInputs, withUnitOf, type Choice } from "./question";
+import { filtered, results, statistics, variedInputs, withUnitOf, type Choice } from "./question";
 
 /** What is looked at, to be chosen; `changed` is told of every choice. */
 export function controls(sweep: Sweep, choice: Choice, changed: (choice: Choice) => void): HTMLElement {
@@ -11,11 +11,15 @@ export function controls(sweep: Sweep, choice: Choice, changed: (choice: Choice)
   const inputs = variedInputs(table).map((it) => ({ value: it.name, text: withUnitOf(it.name, it.unit) }));
   const none = { value: "", text: "–" };
   const by = (place: number): HTMLElement =>
-    select([none, ...inputs.filter((it) => it.value !== choice.x && it.value !== choice.y)], choice.by[place] ?? "", (name) => {
-      const next = [...choice.by];
-      next[place] = name;
-      changed({ ...choice, by: next.filter((it, i) => it && next.indexOf(it) === i) });
-    });
+    select(
+      [none, ...inputs.filter((it) => it.value !== choice.x && it.value !== choice.y)],
+      choice.by[place] ?? "",
+      (name) => {
+        const next = [...choice.by];
+        next[place] = name;
+        changed({ ...choice, by: next.filter((it, i) => it && next.indexOf(it) === i) });
+      },
+    );
   const of = results(table).map((it) => ({ value: it.name, text: withUnitOf(it.name, it.unit) }));
   const share = element("input", {
     type: "text",
@@ -37,11 +41,20 @@ export function controls(sweep: Sweep, choice: Choice, changed: (choice: Choice)
           ),
         )
       : null,
-    labelled("Across", select(columns, choice.x, (x) => changed({ ...choice, x }))),
-    labelled("Up", select(columns, choice.y, (y) => changed({ ...choice, y }))),
+    labelled(
+      "Across",
+      select(columns, choice.x, (x) => changed({ ...choice, x })),
+    ),
+    labelled(
+      "Up",
+      select(columns, choice.y, (y) => changed({ ...choice, y })),
+    ),
     labelled("Beside each other", by(0)),
     choice.by.length > 0 ? labelled("Below each other", by(1)) : null,
-    labelled("Colour", select(of, choice.of, (name) => changed({ ...choice, of: name, share: "" }))),
+    labelled(
+      "Colour",
+      select(of, choice.of, (name) => changed({ ...choice, of: name, share: "" })),
+    ),
     labelled(
       "Of the cells behind a tile",
       select(
@@ -57,10 +70,7 @@ export function controls(sweep: Sweep, choice: Choice, changed: (choice: Choice)
 /** The filters that are on, each to be changed by hand or taken off; and a way to add one. */
 export function filterPanel(choice: Choice, changed: (choice: Choice) => void): HTMLElement {
   const set = (column: string, filter: SweepFilter | null): void => {
-    const where = { ...choice.where };
-    if (filter === null) delete where[column];
-    else where[column] = filter;
-    changed({ ...choice, where });
+    changed(filtered(choice, column, filter));
   };
   const lines = Object.entries(choice.where).map(([name, filter]) => line(choice, name, filter, set));
   const free = choice.table.columns.filter((it) => !(it.name in choice.where) && (!it.input || it.texts.length !== 1));
@@ -78,7 +88,12 @@ export function filterPanel(choice: Choice, changed: (choice: Choice) => void): 
     { class: "filters", "aria-label": "Filters" },
     element("h2", {}, "Filters"),
     ...lines,
-    element("div", { class: "row" }, add, lines.length > 0 ? button("No filter", () => changed({ ...choice, where: {} })) : null),
+    element(
+      "div",
+      { class: "row" },
+      add,
+      lines.length > 0 ? button("No filter", () => changed({ ...choice, where: {} })) : null,
+    ),
   );
 }
 
@@ -99,7 +114,11 @@ function line(
         change: () => {
           if (box.checked) chosen.add(text);
           else chosen.delete(text);
-          if (chosen.size > 0) set(name, column.texts.filter((it) => chosen.has(it)));
+          if (chosen.size > 0)
+            set(
+              name,
+              column.texts.filter((it) => chosen.has(it)),
+            );
         },
       });
       return element("label", { class: "value" }, box, text || "–");

@@ -213,10 +213,7 @@ export class HeatMaps {
     if (all.failed > 0) marks.push(element("li", {}, `× cells failed: ${all.failed}`));
     if (all.missing > 0) marks.push(element("li", {}, `○ cells are missing: ${all.missing}`));
     if (all.computed > all.known) marks.push(element("li", {}, `without a number: ${all.computed - all.known}`));
-    this.legend.replaceChildren(
-      element("p", {}, this.measure),
-      element("ul", { class: "steps" }, ...steps, ...marks),
-    );
+    this.legend.replaceChildren(element("p", {}, this.measure), element("ul", { class: "steps" }, ...steps, ...marks));
   }
 }
 
@@ -250,10 +247,11 @@ function mark(pen: CanvasRenderingContext2D, x: number, y: number, wanted: numbe
     pen.strokeStyle = colour;
     pen.beginPath();
     if (shape === "ring") pen.arc(x, y, size, 0, 2 * Math.PI);
-    else for (const side of [-1, 1]) {
-      pen.moveTo(x - size, y - side * size);
-      pen.lineTo(x + size, y + side * size);
-    }
+    else
+      for (const side of [-1, 1]) {
+        pen.moveTo(x - size, y - side * size);
+        pen.lineTo(x + size, y + side * size);
+      }
     pen.stroke();
   }
 }

@@ -48,8 +48,7 @@ export function choiceIn(state: State, sweep: Sweep): Choice | null {
   const given = state.get("by");
   const by = given === null ? [] : given.split(",").filter(has).slice(0, 2);
   const statistic = state.get("stat") ?? "mean";
-  const where = filtersIn(state.get("where"));
-  for (const name of Object.keys(where)) if (!has(name)) delete where[name];
+  const where = Object.fromEntries(Object.entries(filtersIn(state.get("where"))).filter(([name]) => has(name)));
   return {
     table,
     x,
@@ -60,6 +59,12 @@ export function choiceIn(state: State, sweep: Sweep): Choice | null {
     share: state.get("share") ?? "",
     where,
   };
+}
+
+/** The choice with another filter of a column; null: none. */
+export function filtered(choice: Choice, column: string, filter: SweepFilter | null): Choice {
+  const others = Object.entries(choice.where).filter(([name]) => name !== column);
+  return { ...choice, where: Object.fromEntries(filter ? [...others, [column, filter]] : others) };
 }
 
 export function writeChoice(state: State, choice: Choice): void {

@@ -14,7 +14,13 @@ function sweepName(file: string): string {
 function listOf(workspace: Workspace): HTMLElement {
   const files = workspace.files.filter((it) => it.kind === "sweep");
   if (files.length === 0)
-    return element("p", {}, "There is no merged sweep in this folder: ", element("code", {}, "kerf sweep merge"), " makes one.");
+    return element(
+      "p",
+      {},
+      "There is no merged sweep in this folder: ",
+      element("code", {}, "kerf sweep merge"),
+      " makes one.",
+    );
   return element(
     "ul",
     { class: "links" },

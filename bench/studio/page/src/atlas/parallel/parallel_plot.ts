@@ -1,7 +1,7 @@
 import type { SweepColumn, SweepFilter, SweepSample } from "../../api/sweeps";
 import { drawn, element } from "../../ui/dom";
 import { onColours, palette } from "../../ui/palette";
-import { colourOf, stepsOf } from "../colours";
+import { colourOf, rangeOfLines, stepsOf } from "../colours";
 import { withUnitOf } from "../question";
 import { loadBrushes } from "./brush_axis";
 import { Scale } from "./scale";
@@ -88,7 +88,7 @@ export class ParallelPlot {
 
   private drawLines(pen: CanvasRenderingContext2D, sample: SweepSample, width: number, faint: boolean): void {
     const colours = sample.values[sample.values.length - 1] ?? [];
-    const steps = stepsOf(this.behind?.values[sample.values.length - 1] ?? colours, false);
+    const steps = stepsOf(this.behind?.values[sample.values.length - 1] ?? colours, false, rangeOfLines());
     pen.lineWidth = 1;
     for (let cell = 0; cell < sample.state.length; ++cell) {
       const failed = sample.state[cell] !== "";
