@@ -8,7 +8,8 @@
 #include <kerf/schema/recording.h>
 #include <kerf/schema/sweep_tables_file.h>
 
-#include "support/recordings.h"
+#include "datasets-schema/recording/sample_recording.h"
+#include "support/program.h"
 
 namespace kerf::schema {
 namespace {
@@ -68,7 +69,7 @@ TEST_F(SweepTables, MayHaveNoRow) {
 }
 
 TEST_F(SweepTables, AreToldFromOtherFiles) {
-  write_recording(file_, test::punch({.seconds = 0.1}));
+  write_recording(file_, test::sample_recording());
   try {
     const SweepTablesFile read(file_);
     ADD_FAILURE() << "a recording was taken for a sweep";

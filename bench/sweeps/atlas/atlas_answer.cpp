@@ -186,7 +186,7 @@ AtlasSample sample(SweepAtlas& atlas, const AtlasQuestion& question, const std::
     std::vector<double>& taken = sample.values.emplace_back();
     for (const std::size_t row : rows) {
       if (about.is_listed()) {
-        taken.push_back(about.is_text() ? values->codes[row] : about.values[values->codes[row]]);
+        taken.push_back(values->codes[row]);
       } else {
         taken.push_back(row < values->numbers.size() ? values->numbers[row]
                                                      : std::numeric_limits<double>::quiet_NaN());

@@ -51,7 +51,7 @@ struct AtlasAnswer {
 /// of each column: for what draws a line a cell.
 struct AtlasSample {
   std::vector<AtlasColumn> columns;
-  std::vector<std::vector<double>> values;  ///< of each column; codes of a listed one that is text
+  std::vector<std::vector<double>> values;  ///< of each column; of a listed one places in its list
   std::vector<std::string> state;           ///< "", "failed", "missing"
   std::size_t of = 0;                       ///< so many count
 };

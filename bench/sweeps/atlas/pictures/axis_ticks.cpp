@@ -47,9 +47,7 @@ AtlasScale::AtlasScale(const AtlasColumn& column, double smallest, double larges
 double AtlasScale::place(double value) const {
   if (std::isnan(value)) return value;
   if (!names_.empty()) {
-    const double at =
-        values_.empty() ? value : static_cast<double>(std::ranges::find(values_, value) - values_.begin());
-    return names_.size() < 2 ? 0.5 : at / static_cast<double>(names_.size() - 1);
+    return names_.size() < 2 ? 0.5 : value / static_cast<double>(names_.size() - 1);
   }
   if (!(smallest_ < largest_)) return 0.5;
   const double within = std::clamp(value, smallest_, largest_);

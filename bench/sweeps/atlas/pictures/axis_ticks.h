@@ -16,7 +16,8 @@ namespace kerf::bench {
 /// An axis with as many names as fit: along x in a panel of so many pixels, along y (0) about ten.
 [[nodiscard]] HeatAxis heat_axis(const AtlasAxis& axis, std::size_t width_px);
 
-/// Where numbers stand on one of several parallel axes: from 0 to 1, listed ones at equal distances.
+/// Where the values of a sample stand on one of several parallel axes: from 0 to 1, listed ones at equal
+/// distances.
 class AtlasScale {
  public:
   AtlasScale(const AtlasColumn& column, double smallest, double largest);

@@ -232,7 +232,9 @@ DrawnPicture draw_parallel(SweepAtlas& atlas, const AtlasPicture& picture) {
   for (std::size_t line = 0; line < taken.state.size(); ++line) {
     ParallelLine& one = axes.lines.emplace_back();
     for (std::size_t i = 0; i < scales.size(); ++i) one.at.push_back(scales[i].place(taken.values[i][line]));
-    one.value = taken.values.back()[line];
+    const double of = taken.values.back()[line];
+    const AtlasColumn& colour = taken.columns.back();
+    one.value = colour.values.empty() ? of : colour.values[static_cast<std::size_t>(of)];
     one.is_failed = !taken.state[line].empty();
     if (!std::isfinite(one.value)) continue;
     smallest = std::min(smallest, one.value);

@@ -92,8 +92,8 @@ export const tests = {
 
   async KeepsWhatIsSeenInTheAddress({ browser, studio }) {
     const page = await openSweep({ browser, studio });
-    await page.getByLabel("Across").selectOption("damping");
-    await page.getByLabel("Colour").selectOption("passive_stiffness");
+    await page.getByRole("combobox", { name: "Across" }).selectOption("damping");
+    await page.getByRole("combobox", { name: "Colour" }).selectOption("passive_stiffness");
     await until(
       "the address has it",
       () => page.url().includes("x=damping") && page.url().includes("of=passive_stiffness"),
@@ -104,15 +104,15 @@ export const tests = {
     );
     await page.reload();
     await page.waitForSelector(".heat_legend .steps li");
-    expectEqual(await page.getByLabel("Across").inputValue(), "damping", "across, after a reload");
+    expectEqual(await page.getByRole("combobox", { name: "Across" }).inputValue(), "damping", "across, after a reload");
     expectEqual(
       await page.textContent(".heat_legend p"),
       "mean passive_stiffness [N/m]",
       "what is drawn, after a reload",
     );
     await page.goBack();
-    await until("the step is undone", async () => (await page.getByLabel("Colour").inputValue()) === "comes_to_rest");
-    expectEqual(await page.getByLabel("Across").inputValue(), "damping", "the step before stays");
+    await until("the step is undone", async () => (await page.getByRole("combobox", { name: "Colour" }).inputValue()) === "comes_to_rest");
+    expectEqual(await page.getByRole("combobox", { name: "Across" }).inputValue(), "damping", "the step before stays");
     expectNoComplaints(page);
   },
 
@@ -120,6 +120,7 @@ export const tests = {
     const page = await openSweep({ browser, studio });
     await page.waitForSelector("g.brush .overlay");
     const axis = page.locator('g.brush[data-axis="delay"] .overlay');
+    await axis.scrollIntoViewIfNeeded();
     const box = await axis.boundingBox();
     const middle = box.x + box.width / 2;
     await page.mouse.move(middle, box.y + 1);

@@ -162,7 +162,9 @@ TEST_F(Atlas, SamplesTheSameCellsForEver) {
   EXPECT_EQ(all.of, 20U);
   ASSERT_EQ(all.state.size(), 20U);
   EXPECT_EQ(all.state.back(), "missing");
-  EXPECT_EQ(all.values[0].front(), 0.05);
+  EXPECT_EQ(all.columns[0].texts, (std::vector<std::string>{"0.05", "0.1"}));
+  EXPECT_EQ(all.values[0].front(), 0.0) << "the place of 0.05";
+  EXPECT_EQ(all.values[0].back(), 1.0);
   EXPECT_THAT(all.values[1].back(), IsNan());
   const AtlasSample some = sample(atlas, question, {"energy"}, 10);
   EXPECT_GT(some.state.size(), 3U);

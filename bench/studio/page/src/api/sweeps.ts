@@ -47,7 +47,7 @@ export interface SweepAnswer {
   failed: number[];
   missing: number[];
 }
-/** Cells taken by chance; of a column of texts the places of their texts. */
+/** Cells taken by chance; of a listed column the places of their values in its list. */
 export interface SweepSample {
   of: number;
   state: ("" | "failed" | "missing")[];

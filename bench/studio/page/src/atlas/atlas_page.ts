@@ -1,7 +1,6 @@
 import type { Sweep, SweepAnswer, SweepColumn, SweepSample } from "../api/sweeps";
 import { element } from "../ui/dom";
 import { Latest } from "../ui/latest";
-import { plain } from "../ui/numbers";
 import type { Context } from "../ui/view";
 import { controls, filterPanel } from "./controls";
 import { HeatMaps } from "./heat_maps";
@@ -103,9 +102,9 @@ export class AtlasPage {
     const found = await this.answers.ask(() => this.context.api.post<SweepAnswer>("/api/sweep/answer", question));
     if (!found) return;
     const { computed, known, failed, missing } = found.all;
-    const texts = [`${computed + failed + missing} cells count`, `${known} of them have a number`];
-    if (failed > 0) texts.push(`${failed} failed`);
-    if (missing > 0) texts.push(`${missing} are missing`);
+    const texts = [`${count(computed + failed + missing)} cells count`, `${count(known)} of them have a number`];
+    if (failed > 0) texts.push(`${count(failed)} failed`);
+    if (missing > 0) texts.push(`${count(missing)} are missing`);
     this.counted.textContent = `${texts.join(", ")}.`;
     this.maps.show(found, measureInWords(choice));
   }
@@ -133,13 +132,18 @@ function lineColumns(choice: Choice): SweepColumn[] {
   return [...inputs, ...shown].slice(0, 8);
 }
 
+/** 1,000,000 */
+function count(cells: number): string {
+  return cells.toLocaleString("en-GB");
+}
+
 function about(sweep: Sweep): string {
   const tables = sweep.tables.map((it) => {
-    const counts = [`${plain(it.computed, 7)} computed`];
-    if (it.failed > 0) counts.push(`${plain(it.failed, 7)} failed`);
-    if (it.missing > 0) counts.push(`${plain(it.missing, 7)} missing`);
+    const counts = [`${count(it.computed)} computed`];
+    if (it.failed > 0) counts.push(`${count(it.failed)} failed`);
+    if (it.missing > 0) counts.push(`${count(it.missing)} missing`);
     return `${it.name}: ${counts.join(", ")}`;
   });
   const listed = tables.length > 4 ? `${tables.slice(0, 4).join("; ")}; …` : tables.join("; ");
-  return `A sweep of kerf ${sweep.verb} over ${plain(sweep.cells, 7)} cells, by ${sweep.software}. ${listed}.`;
+  return `A sweep of kerf ${sweep.verb} over ${count(sweep.cells)} cells, by ${sweep.software}. ${listed}.`;
 }

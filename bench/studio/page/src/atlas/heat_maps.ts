@@ -170,7 +170,9 @@ export class HeatMaps {
     for (let i = 0; i < count; i += stride) {
       const x = left + (i + (axis.names.length > 0 ? 0.5 : 0)) * tile;
       pen.fillRect(x - 0.5, bottom, 1, 4);
-      pen.fillText(tickOf(axis, i), x, bottom + 6);
+      // None that would reach into the panel beside.
+      const half = pen.measureText(tickOf(axis, i)).width / 2;
+      if (i === 0 || x + half < left + layout.panelWidth + 2) pen.fillText(tickOf(axis, i), x, bottom + 6);
     }
     pen.fillText(withUnitOf(axis.column, axis.unit), left + layout.panelWidth / 2, bottom + 26, layout.panelWidth);
   }
@@ -192,11 +194,14 @@ export class HeatMaps {
       pen.fillRect(left - 4, y - 0.5, 4, 1);
       pen.fillText(tickOf(axis, i), left - 6, y, layout.left - 26);
     }
+    if (bottom - layout.panelHeight > layout.top + titleHeight + 1) return; // one name for all rows of panels
+    const rows = Math.ceil(layout.panels / layout.across);
+    const all = rows * layout.panelHeight + (rows - 1) * titleHeight;
     pen.save();
-    pen.translate(10, bottom - layout.panelHeight / 2);
+    pen.translate(10, bottom - layout.panelHeight + all / 2);
     pen.rotate(-Math.PI / 2);
     pen.textAlign = "center";
-    pen.fillText(withUnitOf(axis.column, axis.unit), 0, 0, layout.panelHeight + titleHeight);
+    pen.fillText(withUnitOf(axis.column, axis.unit), 0, 0, all + titleHeight);
     pen.restore();
   }
 

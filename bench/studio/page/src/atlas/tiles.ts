@@ -43,11 +43,11 @@ export function layoutOf(answer: SweepAnswer, width: number): Layout {
   const left = 84;
   const panelWidth = Math.max(40, (width - left - 12 - gap * (across - 1)) / across);
   const ratio = partsOf(answer.axes[1]) / partsOf(answer.axes[0]);
-  const panelHeight = Math.min(Math.max(panelWidth * Math.min(Math.max(ratio, 0.35), 0.9), 80), 420);
+  const panelHeight = Math.min(Math.max(panelWidth * Math.min(Math.max(ratio, 0.6), 0.9), 80), 420);
   const rows = Math.ceil(panels / across);
   return {
     width,
-    height: rows * (panelHeight + titleHeight) + 56,
+    height: rows * (panelHeight + titleHeight) + 48,
     across,
     panels,
     panelWidth,

@@ -109,6 +109,8 @@ export class ParallelPlot {
   private axis(scale: Scale, x: number): SVGGElement {
     const place = this.scales.indexOf(scale);
     const bottom = this.y(0);
+    const anchor = place === 0 ? "start" : place === this.scales.length - 1 ? "end" : "middle";
+    const shift = anchor === "start" ? -margin.left : anchor === "end" ? margin.right : 0;
     const name = withUnitOf(scale.column.name, scale.column.unit);
     const ticks = scale.ticks().map((tick) => {
       const text = drawn("text", { class: "tick", x: x + 8, y: this.y(tick.at) + 4 }, tick.text);
@@ -119,7 +121,7 @@ export class ParallelPlot {
       {},
       drawn("line", { class: "axis", x1: x, x2: x, y1: margin.top, y2: bottom }),
       // By turns higher and lower, so that long names do not meet.
-      drawn("text", { class: "name", x, y: place % 2 === 0 ? 34 : 16, "text-anchor": "middle" }, name),
+      drawn("text", { class: "name", x: x + shift, y: place % 2 === 0 ? 34 : 16, "text-anchor": anchor }, name),
       ...ticks,
       drawn("text", { class: "tick", x: x + 8, y: this.y(null) + 4 }, "?"),
       drawn("g", { class: "brush", transform: `translate(${x} ${margin.top})`, "data-axis": scale.column.name }),

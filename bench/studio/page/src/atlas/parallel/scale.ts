@@ -22,10 +22,7 @@ export class Scale {
   /** Null: not known. */
   place(value: number | null): number | null {
     if (value === null) return null;
-    if (this.listed > 0) {
-      const at = this.column.values.length > 0 ? this.column.values.indexOf(value) : value;
-      return this.listed < 2 ? 0.5 : at / (this.listed - 1);
-    }
+    if (this.listed > 0) return this.listed < 2 ? 0.5 : value / (this.listed - 1);
     if (!(this.smallest < this.largest)) return 0.5;
     return this.logarithmic
       ? Math.log(value / this.smallest) / Math.log(this.largest / this.smallest)
@@ -61,9 +58,10 @@ export class Scale {
   /** What a stretch of the axis lets through; null: it leaves nothing out, or holds no value. */
   filter(lower: number, upper: number): SweepFilter | null {
     if (this.listed > 0) {
+      const near = Math.min(0.02, 0.4 / Math.max(1, this.listed - 1)); // nobody hits the very end
       const kept = this.column.texts.filter((_, i) => {
         const at = this.listed < 2 ? 0.5 : i / (this.listed - 1);
-        return at >= lower && at <= upper;
+        return at >= lower - near && at <= upper + near;
       });
       return kept.length === 0 || kept.length === this.listed ? null : kept;
     }
