@@ -10,7 +10,7 @@ import { makePunch } from "./recordings_pages.mjs";
 import { makeStudy } from "./study_pages.mjs";
 
 /** A workspace in which every page has something to show. */
-async function furnish(studio) {
+export async function furnish(studio) {
   studio.record("cut.h5", 20);
   studio.record("another_cut.h5", 10);
   studio.kerfOrThrow("session", "key", "keeper.key");
@@ -99,7 +99,7 @@ export const tests = {
         if (name === "study") await page.waitForFunction(() => document.querySelectorAll(".small_plot").length === 5);
         await look(name);
         if (name === "flags") {
-          await page.click("#tab_worth");
+          await page.click("#tab_cycles");
           await page.waitForSelector(".inspection table");
           await look("inspect");
         }

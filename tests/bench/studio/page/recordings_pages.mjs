@@ -22,6 +22,9 @@ async function openRecording(page, studio, name) {
   await page.waitForSelector(".time_plot");
 }
 
+/** Opens what stands under a button of the tab's tools. */
+const popover = (page, name) => page.click(`.tab_tools summary:has-text("${name}")`);
+
 const reading = (page) => page.textContent(".time_reading");
 const views = (page) => {
   const asked = [];
@@ -72,8 +75,8 @@ export const tests = {
     const page = await prepare({ browser, studio });
     await page.goto(studio.page("recordings"));
     await page.waitForSelector("tbody tr");
-    expectEqual(await page.locator("tbody tr").count(), 2, "rows");
-    await page.fill("input[type=search]", "OTH");
+    expectEqual(await page.locator("main tbody tr").count(), 2, "rows");
+    await page.fill("main input[type=search]", "OTH");
     expectEqual(await page.locator("tbody tr a").allTextContents(), ["other.h5"], "what the filter leaves");
     await page.click("tbody tr a");
     await page.waitForSelector(".time_plot");
@@ -116,7 +119,7 @@ export const tests = {
   async ShowsCyclesOneByOne({ browser, studio, screenshots }) {
     const page = await prepare({ browser, studio });
     await openRecording(page, studio, "cut.h5");
-    await page.click("#tab_loops");
+    await page.click("#tab_loop");
     const text = () => page.textContent(".loops_text");
     await until("cycles are there", async () => /^Cycles 1 to \d+ of \d+/.test(await text()));
     await page.selectOption(".recording_loops select", "one");
@@ -160,6 +163,7 @@ export const tests = {
     for (const { reason } of last.flags) expect(said.at(-1).includes(reason), `${reason} in ${said.at(-1)}`);
     expect(said.at(-1).includes("tool put down"), said.at(-1));
     const whole = await reading(page);
+    await popover(page, "Cycles");
     await page.locator(".recording_flags li.flagged button").last().click();
     await until("it is shown", async () => {
       const [from, to] = (await reading(page)).match(/[\d.]+/g).map(Number);
@@ -175,7 +179,7 @@ export const tests = {
     const id = await studio.id("recordings", "punch.h5");
     const { inspection } = (await studio.api(`/api/recording/inspection?id=${id}`)).json;
     for (const [name, value] of Object.entries(inspection)) expectEqual(value, verb[name], name);
-    await page.click("#tab_worth");
+    await page.click("#tab_cycles");
     await page.waitForSelector(".inspection table");
     const warnings = await page.locator(".warnings li span:last-child").allTextContents();
     expectEqual(warnings, verb.warnings, "warnings, which come first");
@@ -217,6 +221,7 @@ export const tests = {
     const asked = views(page);
     await openRecording(page, studio, "cut.h5");
     const other = await studio.id("recordings", "other.h5");
+    await popover(page, "Laid over");
     await page.selectOption(".overlay select", other);
     await until("both are drawn", async () => (await page.locator(".time_legend").first().locator("li").count()) === 3);
     await until("the other is fetched", () => asked.some((it) => it.id === other));
@@ -238,10 +243,10 @@ export const tests = {
       expectEqual(await audit(page), [], `complaints, ${colorScheme}, the list`);
       await openRecording(page, studio, "cut.h5");
       expectEqual(await audit(page), [], `complaints, ${colorScheme}, over time`);
-      await page.click("#tab_loops");
+      await page.click("#tab_loop");
       await page.waitForSelector(".loops_frame .curve");
       expectEqual(await audit(page), [], `complaints, ${colorScheme}, loops`);
-      await page.click("#tab_worth");
+      await page.click("#tab_cycles");
       await page.waitForSelector(".inspection table");
       expectEqual(await audit(page), [], `complaints, ${colorScheme}, inspected`);
     }

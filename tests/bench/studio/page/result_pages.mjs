@@ -30,6 +30,13 @@ async function heading(page, pattern) {
   await until(`the heading is ${pattern}`, async () => pattern.test((await page.textContent("h1")) ?? ""), limit_ms);
 }
 
+/** The tab of the recording shows this result: a job's opens by itself. */
+async function result(page, recording, name) {
+  await heading(page, new RegExp(`^${recording}$`));
+  const chosen = page.locator(".tab_head select option:checked");
+  await until(`${name} is shown`, async () => (await chosen.textContent().catch(() => "")) === name, limit_ms);
+}
+
 async function go(page, studio, place) {
   await page.goto(`${studio.url}#/${place}`);
   await page.waitForSelector("main form, main table");
@@ -53,7 +60,7 @@ async function testFits(page, studio) {
   await pickRecording(page, "cut.h5");
   await tick(page, "kelvin", "exponential");
   await page.getByRole("button", { name: "Fit", exact: true }).click();
-  await heading(page, /^Fit cut\.fit$/);
+  await result(page, "cut.h5", "cut.fit");
   const written = await jsonIn(studio, "cut.fit/fit.json");
   expectEqual(
     await page.locator("table.fits tbody th").allTextContents(),
@@ -112,7 +119,7 @@ async function testChart(page, studio) {
   await pickRecording(page, "short.h5");
   await tick(page, "kelvin");
   await page.getByRole("button", { name: "Chart", exact: true }).click();
-  await heading(page, /short\.chart$/);
+  await result(page, "short.h5", "short.chart");
   const { points } = await jsonIn(studio, "short.chart/chart.json");
   expectEqual(await page.locator("g.point").count(), points.length, "points");
   const texts = await expectAsInPrint(page, studio, "short.chart/chart.svg");

@@ -3,6 +3,20 @@ import { date, length } from "../recordings/recording_list";
 import { element } from "../ui/dom";
 import { withUnit } from "../ui/numbers";
 
+/** "sim:scissors · 20 s · 20,000 rows at 1 kHz", and what is the matter with it. */
+export function factsInShort(recording: Recording): string {
+  const gaps = recording.gaps_in_all;
+  return [
+    recording.device,
+    length(recording.seconds),
+    `${recording.rows.toLocaleString("en-GB")} rows`,
+    recording.status === "complete" ? "" : recording.status,
+    gaps > 0 ? `${gaps.toLocaleString("en-GB")} gaps` : "",
+  ]
+    .filter(Boolean)
+    .join(" · ");
+}
+
 /** What its file says of a recording, in words. */
 export function factsOf(recording: Recording): HTMLElement {
   const fact = (name: string, text: string): HTMLElement | null =>

@@ -2,6 +2,7 @@ import type { Recording } from "../api/recordings";
 import { RecordingOverlay } from "../recordings/recording_overlay";
 import type { Drawn } from "../recordings/recording_time";
 import { Latest } from "../ui/latest";
+import { Popover } from "../ui/popover";
 import type { Context, OpenRecording } from "../ui/view";
 import { stateKeys } from "./keys";
 
@@ -9,7 +10,7 @@ type Alignment = "start" | "cycle";
 
 /** The recordings laid over the page's own, as the address has them. */
 export class Overlay {
-  readonly root: HTMLElement;
+  readonly popover: Popover;
   private readonly panel: RecordingOverlay;
   private readonly known = new Map<string, Recording>();
   private readonly latest: Latest;
@@ -29,7 +30,7 @@ export class Overlay {
         changed();
       },
     });
-    this.root = this.panel.root;
+    this.popover = new Popover("Laid over", this.panel.root, context.signal);
     this.panel.show([], this.alignment);
   }
 
@@ -48,6 +49,7 @@ export class Overlay {
     if (!found) return;
     this.over = found.filter((it) => it !== null);
     this.panel.show(this.over, this.alignment);
+    this.popover.text = this.over.length > 0 ? `Laid over ${this.over.length}` : "Laid over";
     this.changed();
   }
 

@@ -2,12 +2,14 @@ import type { Recording, RecordingInspection } from "../api/recordings";
 import type { Workspace } from "../api/workspace";
 import { element } from "../ui/dom";
 import type { Context, OpenRecording, PageContext } from "../ui/view";
+import { factsInShort } from "./facts";
 import { recordingTabs } from "./registry";
 import { TabStrip } from "./tab_strip";
 
 /** One recording with its tabs: what is around the tab stays while they change. */
 export class RecordingPage {
   private readonly head = element("h1", {});
+  private readonly facts = element("p", { class: "recording_facts" });
   private readonly strip: TabStrip;
   private readonly panel = element("div", { class: "tab_panel", role: "tabpanel", id: "tab_panel" });
   private recording: OpenRecording | null = null;
@@ -19,7 +21,7 @@ export class RecordingPage {
   ) {
     this.strip = new TabStrip(recordingTabs, (tab) => this.go(tab));
     this.head.textContent = "Recording";
-    root.append(element("div", { class: "recording_head" }, this.head, this.strip.root), this.panel);
+    root.append(element("div", { class: "recording_head" }, this.head, this.strip.root, this.facts), this.panel);
     context.onTab(() => this.show());
     context.offer(
       ...recordingTabs.map((tab, k) => ({
@@ -60,6 +62,8 @@ export class RecordingPage {
       this.recording = { id, name, about, workspace, inspection: this.inspectOnce(id), reload: () => void this.open() };
       this.head.textContent = name;
       this.head.title = name;
+      this.facts.textContent = factsInShort(about);
+      this.facts.title = this.facts.textContent;
       this.show();
     } catch (error) {
       if (signal.aborted) return;
@@ -111,6 +115,7 @@ function forTab(page: PageContext): { context: Context; end: () => void } {
     },
     signal: gone.signal,
     state: { ...page.state, onChange: (listener) => page.state.onChange(() => gone.signal.aborted || listener()) },
+    onFolder: (listener) => page.onFolder((it) => gone.signal.aborted || listener(it)),
     offer: (...commands) => {
       const take = page.offer(...commands);
       ends.push(take);

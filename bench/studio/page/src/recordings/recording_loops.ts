@@ -13,6 +13,7 @@ const atOnce = 60; // cycles
 /** Force against position: all cycles, one, or their average; of several recordings the averages. */
 export class RecordingLoops {
   readonly root: HTMLElement;
+  readonly tools: HTMLElement;
   private plot: XyPlot | null = null;
   private readonly frame = element("div", {
     class: "loops_frame",
@@ -43,21 +44,16 @@ export class RecordingLoops {
       () => this.choose(),
     );
     this.axis = select([], "", () => this.choose());
-    this.root = element(
+    this.tools = element(
       "div",
-      { class: "recording_loops" },
-      element(
-        "div",
-        { class: "row" },
-        labelled("Show", this.kind),
-        labelled("Axis", this.axis),
-        this.previous,
-        this.next,
-        this.text,
-      ),
-      this.frame,
-      this.key_,
+      { class: "tab_tools" },
+      labelled("Show", this.kind),
+      labelled("Axis", this.axis),
+      this.previous,
+      this.next,
+      this.text,
     );
+    this.root = element("div", { class: "recording_loops" }, this.tools, this.frame, this.key_);
   }
 
   end(): void {

@@ -27,6 +27,7 @@ interface Source {
 export class RecordingTime {
   readonly root: HTMLElement;
   readonly stack: TimeStack;
+  readonly legend = legend();
   private sources: Source[] = [];
   private first: Recording | null = null;
   private found: RecordingInspection | null = null;
@@ -34,18 +35,21 @@ export class RecordingTime {
   constructor(
     private readonly api: Api,
     private readonly complain: (error: unknown) => void,
+    /** Stands in the bar above the plots, before what is read there. */
+    tools: HTMLElement,
     /** The stretch that is shown has changed; whether it is the whole. */
     private readonly moved: (from_s: number, to_s: number, whole: boolean) => void = () => {},
   ) {
     this.stack = new TimeStack({
       name: "The recording over time",
       timeLabel: "time [s]",
+      tools,
       changed: ({ from, to, first, last }) => {
         this.want();
         this.moved(from, to, from <= first && to >= last);
       },
     });
-    this.root = element("div", { class: "recording_time" }, this.stack.root, legend());
+    this.root = element("div", { class: "recording_time" }, this.stack.root);
   }
 
   end(): void {

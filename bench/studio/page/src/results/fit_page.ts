@@ -41,9 +41,9 @@ export class FitPage {
     this.recording = recordingsFor(workspace, of?.name ?? "")[0]?.id ?? "";
     this.table = new FitTable(fit, (law) => this.look(law));
     const refused = fit.refused.map((it) => `${it.model}: ${it.why}`);
-    this.root = element(
+    const compared = element(
       "div",
-      {},
+      { class: "compared" },
       element(
         "p",
         { class: "quiet" },
@@ -61,8 +61,8 @@ export class FitPage {
       blamed ? element("p", {}, element("strong", {}, "What is to blame: "), `${blamed}.`) : null,
       list("Warnings", fit.warnings, "warnings"),
       list(`${refused.length} laws could not be fitted`, refused),
-      this.detail,
     );
+    this.root = element("div", { class: "fit_page" }, compared, this.detail);
     const first = fit.fits.find((it) => it.model === fit.choice.model) ?? fit.fits[0];
     if (first) this.look(first);
   }
@@ -89,20 +89,18 @@ export class FitPage {
         void this.showResiduals();
       },
     );
-    this.detail.replaceChildren(
-      head,
-      equation,
+    this.detail.replaceChildren(head, equation, labelled("Residuals in the recording", against));
+    const more = [
       parameterTable(law),
       list("Warnings", law.warnings, "warnings") ?? "",
       list("Parameters that cannot be told apart", entanglements(law), "warnings") ?? "",
-      labelled("Residuals in the recording", against),
-    );
+    ];
     if (!file) {
-      this.detail.append(element("p", {}, "Its law file is not in this folder any more."));
+      this.detail.append(element("p", {}, "Its law file is not in this folder any more."), ...more);
       return;
     }
     this.plots = new ResidualPlots(file.position_unit || "m", file.force_unit || "N");
-    this.detail.append(this.plots.root);
+    this.detail.append(this.plots.root, ...more);
     this.context.api.get<LawView>("/api/law", { id: file.id }).then((it) => {
       if (this.shown === file) equation.textContent = it.equation;
     }, this.context.complain);

@@ -2,7 +2,7 @@ import type { Api } from "../api/api";
 import type { Recording, RecordingInspection } from "../api/recordings";
 import type { Workspace } from "../api/workspace";
 import type { Address } from "../shell/address";
-import type { Command } from "../shell/commands";
+import type { Command } from "../shell/keys/commands";
 import type { Step } from "../shell/router";
 
 /** Where a page is: "#/fits/1f3a" is { view: "fits", id: "1f3a" }. */
@@ -38,6 +38,10 @@ export interface Context {
   complain: (error: unknown) => void;
   /** Puts the focus on the page's h1, where it has changed. */
   focusHead: () => void;
+  /** What is in the folder: told now, if it is known, and whenever it has changed; ends with the page or tab. */
+  onFolder: (listener: (workspace: Workspace) => void) => void;
+  /** Somebody has written a file: the list need not wait until it looks again. */
+  lookAtFolder: () => void;
   /** Offers commands in the palette and by their keys, until the page or tab goes or what it gives back is called. */
   offer: (...commands: Command[]) => () => void;
 }

@@ -4,7 +4,7 @@ import type { LoopStatus } from "../api/loop";
 import type { Trace } from "../api/recordings";
 import type { Workspace } from "../api/workspace";
 import { button, element, labelled, select } from "../ui/dom";
-import { singleKeysOn } from "../ui/help";
+import { singleKeysOn } from "../ui/single_keys";
 import { isTyping } from "../ui/keys";
 import type { Context, View } from "../ui/view";
 import { LastEvents, LiveStream } from "../scope/live_stream";

@@ -1,3 +1,4 @@
+import { element } from "../../ui/dom";
 import type { RecordingTab } from "../../ui/view";
 import { editorOf } from "../../views/editor";
 
@@ -5,5 +6,9 @@ import { editorOf } from "../../views/editor";
 export const lawTab: RecordingTab = {
   name: "law",
   title: "Law",
-  mount: (root, context, recording) => editorOf(root, context, recording),
+  mount(root, context, recording) {
+    const frame = element("div", { class: "editor" });
+    root.append(frame);
+    return editorOf(frame, context, recording);
+  },
 };

@@ -1,5 +1,4 @@
 import { RecordingLoops } from "../../recordings/recording_loops";
-import { element } from "../../ui/dom";
 import type { RecordingTab } from "../../ui/view";
 import { Overlay } from "../overlay";
 
@@ -10,14 +9,8 @@ export const loopTab: RecordingTab = {
   mount(root, context, recording) {
     const loops = new RecordingLoops(context);
     const overlay = new Overlay(context, recording, () => loops.show(overlay.drawn));
-    root.append(
-      element(
-        "div",
-        { class: "recording_body" },
-        element("div", { class: "recording_main" }, loops.root),
-        element("aside", { class: "recording_side", "aria-label": "What is drawn" }, overlay.root),
-      ),
-    );
+    loops.tools.prepend(overlay.popover.root);
+    root.append(loops.root);
     loops.show(overlay.drawn);
     void overlay.follow();
     context.state.onChange(() => {

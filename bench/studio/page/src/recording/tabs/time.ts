@@ -1,7 +1,8 @@
-import { cyclesOf, FlaggedCycles } from "../../recordings/cycle_flags";
+import { cyclesOf, FlaggedCycles, flaggedInWords } from "../../recordings/cycle_flags";
 import { RecordingTime } from "../../recordings/recording_time";
 import { firstTraces, traceChoice } from "../../recordings/recording_traces";
 import { element } from "../../ui/dom";
+import { Popover } from "../../ui/popover";
 import type { RecordingTab } from "../../ui/view";
 import { eventList } from "../event_list";
 import { stateKeys } from "../keys";
@@ -12,19 +13,28 @@ export const timeTab: RecordingTab = {
   name: "time",
   title: "Time",
   mount(root, context, recording) {
-    const { state } = context;
+    const { state, signal } = context;
     const { about } = recording;
-    const chosen = new Set(state.get(stateKeys.traces)?.split(",") ?? firstTraces(about));
-    const time = new RecordingTime(context.api, context.complain, (from, to, whole) =>
+    const usual = [...firstTraces(about)];
+    const chosen = new Set(usual);
+    const tools = element("div", { class: "tab_tools" });
+    const time = new RecordingTime(context.api, context.complain, tools, (from, to, whole) =>
       state.set({ [stateKeys.from]: whole ? null : from, [stateKeys.to]: whole ? null : to }),
     );
     const overlay = new Overlay(context, recording, () => time.show(overlay.drawn, chosen));
-    const choice = traceChoice(about.traces, chosen, () => {
-      const usual = [...firstTraces(about)];
-      const isUsual = usual.length === chosen.size && usual.every((it) => chosen.has(it));
-      state.set({ [stateKeys.traces]: isUsual ? null : [...chosen].join(",") }, "push");
-      time.show(overlay.drawn, chosen);
-    });
+    const traces = element("div", {});
+    const take = (): void => {
+      const named = state.get(stateKeys.traces)?.split(",") ?? usual;
+      chosen.clear();
+      for (const it of about.traces) if (named.includes(it.name)) chosen.add(it.name);
+      traces.replaceChildren(
+        traceChoice(about.traces, chosen, () => {
+          const isUsual = usual.length === chosen.size && usual.every((it) => chosen.has(it));
+          state.set({ [stateKeys.traces]: isUsual ? null : [...chosen].join(",") }, "push");
+          time.show(overlay.drawn, chosen);
+        }),
+      );
+    };
     const look = (): void => {
       const [from, to] = [state.number(stateKeys.from), state.number(stateKeys.to)];
       if (from !== null && to !== null && to > from) time.showAt(from, to);
@@ -32,34 +42,39 @@ export const timeTab: RecordingTab = {
     };
     const lookAt = (from_s: number, to_s: number): void => time.showAt(from_s - 1, to_s + 1);
     const flags = new FlaggedCycles(lookAt);
-    root.append(
-      element(
-        "div",
-        { class: "recording_body" },
-        element("div", { class: "recording_main" }, time.root),
-        element(
-          "aside",
-          { class: "recording_side", "aria-label": "What is drawn" },
-          choice,
-          overlay.root,
-          flags.root,
-          eventList(about, (at) => lookAt(at, at)),
-        ),
-      ),
+    const cycles = new Popover("Cycles", element("div", {}, flags.root, time.legend), signal);
+    const showCycles = (of: ReturnType<typeof cyclesOf>): void => {
+      flags.show(of);
+      cycles.text = flaggedInWords(of);
+    };
+    const events = element(
+      "div",
+      {},
+      eventList(about, (at) => lookAt(at, at)),
     );
+    tools.append(
+      new Popover("Traces", traces, signal).root,
+      overlay.popover.root,
+      cycles.root,
+      new Popover(`Events ${about.events_in_all.toLocaleString("en-GB")}`, events, signal).root,
+    );
+    root.append(time.root);
+    take();
     time.show(overlay.drawn, chosen);
     look();
-    flags.show(cyclesOf(about, null));
+    showCycles(cyclesOf(about, null));
     void overlay.follow();
-    context.state.onChange(() => {
+    state.onChange(() => {
+      take();
+      time.show(overlay.drawn, chosen);
       look();
       void overlay.follow();
     });
     recording.inspection().then(
       (found) => {
-        if (context.signal.aborted) return;
+        if (signal.aborted) return;
         time.inspected(found);
-        flags.show(cyclesOf(about, found));
+        showCycles(cyclesOf(about, found));
       },
       () => {}, // the tab of cycles says why
     );

@@ -20,12 +20,13 @@ interface Part {
 /** The charts and choices of one recording: one of them is shown, and another can be ordered. */
 export class ChartsOfRecording {
   readonly root = element("div", { class: "scrolling results" });
-  private readonly head = element("div", { class: "row tab_head" });
+  private readonly head = element("div", { class: "tab_head" });
   private readonly order = element("details", { class: "order_fold" });
   private readonly shown = element("div", { class: "result" });
   private readonly jobs: JobList;
   private readonly latest: Latest;
   private part: Part | null = null;
+  private isChart = false; // what is shown
 
   constructor(
     private readonly context: Context,
@@ -33,7 +34,7 @@ export class ChartsOfRecording {
   ) {
     this.latest = new Latest(context.signal);
     this.jobs = new JobList(context, ["chart", "choice"]);
-    this.root.append(this.head, this.order, this.jobs.root, this.shown);
+    this.root.append(element("div", { class: "tab_tools" }, this.head, this.order), this.jobs.root, this.shown);
     context.state.onChange(() => void this.show());
     void this.show();
     void this.offer();
@@ -60,6 +61,7 @@ export class ChartsOfRecording {
       if (!found) return;
       const { workspace, files, asked, file, chart } = found;
       this.part?.end();
+      this.isChart = chart !== null;
       this.part = chart && file ? this.chartOf(workspace, file, chart) : file ? this.choiceOf(workspace, file) : null;
       this.order.open = !this.part;
       this.head.replaceChildren(
@@ -102,7 +104,10 @@ export class ChartsOfRecording {
 
   private work(path: string, body: Readonly<Record<string, unknown>>): void {
     this.context.say("");
-    void this.jobs.order(path, body, (file) => this.choose(file));
+    // A choice stands beside the chart, where there is one.
+    void this.jobs.order(path, body, (file) =>
+      this.isChart && path === "/api/choose" ? void this.show() : this.choose(file),
+    );
   }
 
   private async offer(): Promise<void> {

@@ -13,7 +13,7 @@ import { newest, resultsOf } from "./files";
 /** The fits of one recording: one of them is shown, and another can be ordered. */
 export class FitsOfRecording {
   readonly root = element("div", { class: "scrolling results" });
-  private readonly head = element("div", { class: "row tab_head" });
+  private readonly head = element("div", { class: "tab_head" });
   private readonly order = element("details", { class: "order_fold" });
   private readonly shown = element("div", { class: "result" });
   private readonly jobs: JobList;
@@ -26,7 +26,7 @@ export class FitsOfRecording {
   ) {
     this.latest = new Latest(context.signal);
     this.jobs = new JobList(context, ["fit"]);
-    this.root.append(this.head, this.order, this.jobs.root, this.shown);
+    this.root.append(element("div", { class: "tab_tools" }, this.head, this.order), this.jobs.root, this.shown);
     context.state.onChange(() => void this.show());
     void this.show();
     void this.offer();

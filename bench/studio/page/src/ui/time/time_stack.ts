@@ -19,6 +19,7 @@ export interface PlotOrder {
 export interface StackOptions {
   name: string;
   timeLabel: string;
+  tools?: HTMLElement; // in the bar, before what is read there
   /** The stretch has changed, by hand. */
   changed?: (range: TimeRange) => void;
   zoomedWhileFollowing?: (factor: number) => void;
@@ -161,6 +162,7 @@ export class TimeStack {
     return element(
       "div",
       { class: "time_bar" },
+      this.options.tools ?? null,
       this.reading,
       element(
         "div",
