@@ -68,7 +68,7 @@ function ground(page, plot, at_s, pixels) {
 /** But for what mixing it with what lies below has rounded. */
 const isColour = (found, wanted) => found.every((it, i) => Math.abs(it - wanted[i]) <= 3);
 const vermillion = [193, 77, 0, 255];
-const ink = [23, 33, 43, 255];
+const ink = [22, 27, 34, 255];
 
 export const tests = {
   async ListsAndFiltersRecordings({ browser, studio }) {
@@ -122,12 +122,12 @@ export const tests = {
     await page.click("#tab_loop");
     const text = () => page.textContent(".loops_text");
     await until("cycles are there", async () => /^Cycles 1 to \d+ of \d+/.test(await text()));
-    await page.selectOption(".recording_loops select", "one");
+    await page.selectOption(".recording_loops select >> nth=0", "one");
     await until("the first", async () => (await text()).startsWith("Cycle 1 of"));
     await page.focus(".loops_frame");
     await page.keyboard.press("ArrowRight");
     await until("the second", async () => (await text()).startsWith("Cycle 2 of"));
-    await page.selectOption(".recording_loops select", "average");
+    await page.selectOption(".recording_loops select >> nth=0", "average");
     await until("the average", async () => (await page.locator(".loops_frame .curve").count()) === 2);
     await page.screenshot({ path: `${screenshots}/loops.png` });
     expectNoComplaints(page);

@@ -54,7 +54,7 @@ export const tests = {
     });
     const [seen, address] = [await reading(page), page.url()];
     await page.click("#tab_loop");
-    await page.selectOption(".recording_loops select", "one");
+    await page.selectOption(".recording_loops select >> nth=0", "one");
     await page.focus(".loops_frame");
     await page.keyboard.press("ArrowRight");
     await until("the cycle is in the address", async () => (await hash(page)).includes("cycle=2"));

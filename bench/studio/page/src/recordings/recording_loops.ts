@@ -90,19 +90,20 @@ export class RecordingLoops {
 
   /** By hand: a step of its own in the address. */
   private choose(): void {
-    const own = this.drawn[0]?.recording.cycles?.axis ?? 0;
-    const axis = Number(this.axis.value);
-    this.context.state.set({ [stateKeys.axis]: axis === own ? null : axis }, "push");
-    this.keep();
+    this.keep("push");
     void this.load();
   }
 
-  private keep(): void {
+  private keep(step: "push" | "replace"): void {
+    const own = this.drawn[0]?.recording.cycles?.axis ?? 0;
+    const axis = Number(this.axis.value);
     const kind = this.kind.value;
-    this.context.state.set({
+    const values = {
+      [stateKeys.axis]: axis === own ? null : axis,
       [stateKeys.loops]: kind === "all" ? null : kind,
       [stateKeys.cycle]: kind === "one" ? this.cycle + 1 : null,
-    });
+    };
+    this.context.state.set(values, step);
   }
 
   private step(by: number): void {
@@ -110,7 +111,7 @@ export class RecordingLoops {
     const width = this.kind.value === "one" ? 1 : atOnce;
     const last = Math.max(0, this.cycles - 1);
     this.cycle = Math.min(Math.max(0, this.cycle + by * width), last - (last % width));
-    this.keep();
+    this.keep("replace");
     void this.load();
   }
 

@@ -202,7 +202,12 @@ function mount(root: HTMLElement, context: Context): () => void {
     "click",
     () => void context.api.post("/api/session/stop").then(look).catch(context.complain),
   );
-  refresh().catch(context.complain);
+  refresh()
+    .then(() => {
+      const asked = known.find((it) => it.id === context.place.id);
+      if (asked && running === "" && !asked.finished && asked.error === "") choose(asked);
+    })
+    .catch(context.complain);
   look().catch(context.complain);
   const timer = setInterval(() => void look().catch(context.complain), 500);
   return () => clearInterval(timer);

@@ -9,7 +9,7 @@ export const loopTab: RecordingTab = {
   mount(root, context, recording) {
     const loops = new RecordingLoops(context);
     const overlay = new Overlay(context, recording, () => loops.show(overlay.drawn));
-    loops.tools.prepend(overlay.popover.root);
+    loops.tools.lastElementChild?.before(overlay.popover.root);
     root.append(loops.root);
     loops.show(overlay.drawn);
     void overlay.follow();

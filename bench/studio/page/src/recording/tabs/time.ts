@@ -18,10 +18,20 @@ export const timeTab: RecordingTab = {
     const usual = [...firstTraces(about)];
     const chosen = new Set(usual);
     const tools = element("div", { class: "tab_tools" });
-    const time = new RecordingTime(context.api, context.complain, tools, (from, to, whole) =>
-      state.set({ [stateKeys.from]: whole ? null : from, [stateKeys.to]: whole ? null : to }),
-    );
-    const overlay = new Overlay(context, recording, () => time.show(overlay.drawn, chosen));
+    let isByHand = false; // what the address asks for is not written into it again
+    const time = new RecordingTime(context.api, context.complain, tools, (from, to, whole) => {
+      if (isByHand) state.set({ [stateKeys.from]: whole ? null : from, [stateKeys.to]: whole ? null : to });
+    });
+    const overlay = new Overlay(context, recording, () => draw());
+    /** Draws what is chosen, over the stretch of the address. */
+    const draw = (): void => {
+      const [from, to] = [state.number(stateKeys.from), state.number(stateKeys.to)];
+      isByHand = false;
+      time.show(overlay.drawn, chosen);
+      if (from !== null && to !== null && to > from) time.showAt(from, to);
+      else time.showAll();
+      isByHand = true;
+    };
     const traces = element("div", {});
     const take = (): void => {
       const named = state.get(stateKeys.traces)?.split(",") ?? usual;
@@ -31,14 +41,9 @@ export const timeTab: RecordingTab = {
         traceChoice(about.traces, chosen, () => {
           const isUsual = usual.length === chosen.size && usual.every((it) => chosen.has(it));
           state.set({ [stateKeys.traces]: isUsual ? null : [...chosen].join(",") }, "push");
-          time.show(overlay.drawn, chosen);
+          draw();
         }),
       );
-    };
-    const look = (): void => {
-      const [from, to] = [state.number(stateKeys.from), state.number(stateKeys.to)];
-      if (from !== null && to !== null && to > from) time.showAt(from, to);
-      else time.showAll();
     };
     const lookAt = (from_s: number, to_s: number): void => time.showAt(from_s - 1, to_s + 1);
     const flags = new FlaggedCycles(lookAt);
@@ -60,14 +65,12 @@ export const timeTab: RecordingTab = {
     );
     root.append(time.root);
     take();
-    time.show(overlay.drawn, chosen);
-    look();
+    draw();
     showCycles(cyclesOf(about, null));
     void overlay.follow();
     state.onChange(() => {
       take();
-      time.show(overlay.drawn, chosen);
-      look();
+      draw();
       void overlay.follow();
     });
     recording.inspection().then(

@@ -90,5 +90,5 @@ export class Help {
 
 /** "Ctrl+Alt+1" as "Ctrl + Alt + 1", "g r" as "g, then r". */
 export function keysInWords(keys: string): string {
-  return keys.replace(/(?<=.)\+(?=.)/g, " + ").replace(/^(\S) (\S)$/, "$1, then $2");
+  return keys.replace(/(?<=.)\+(?=.)/g, " + ").replace(/^(\w) (\w)$/, "$1, then $2");
 }

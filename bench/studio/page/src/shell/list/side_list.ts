@@ -76,7 +76,7 @@ export class SideList {
   /** The page shows this one now. */
   mark(kind: Kind | null, id: string): void {
     this.open = id;
-    if (kind && id && kind !== this.choice.kind) this.choose({ kind });
+    if (kind && kind !== this.choice.kind) this.choose({ kind });
     this.markRows();
   }
 
@@ -116,7 +116,9 @@ export class SideList {
     const of = found.length === all.length ? "" : ` of ${all.length.toLocaleString("en-GB")}`;
     const unlooked = workspace.unlooked > 0 ? `; ${workspace.unlooked} not looked into yet` : "";
     this.count.textContent =
-      all.length === 0 ? none[kind] : `${found.length.toLocaleString("en-GB")}${of} ${kind}${unlooked}`;
+      all.length === 0
+        ? none[kind]
+        : `${found.length.toLocaleString("en-GB")}${of} ${found.length === 1 ? one[kind] : kind}${unlooked}`;
     this.markRows();
   }
 
@@ -125,7 +127,7 @@ export class SideList {
     const told = (picture: Thumbnail): void => {
       if (picture.flagged > 0) marks.prepend(badge("flagged", `⚑ ${picture.flagged}`));
     };
-    const [, folder = "", file = it.name] = /^(.*\/)?([^/]*)$/.exec(it.name) ?? [];
+    const [name, folder] = inShort(it.name);
     return element(
       "a",
       { class: "list_row", href: it.address, title: it.name },
@@ -139,8 +141,8 @@ export class SideList {
           element(
             "span",
             { class: "list_name" },
-            element("bdi", {}, file.replace(/\.h5$/, "")),
-            folder ? element("span", { class: "list_folder" }, ` ${folder.replace(/\/$/, "")}`) : null,
+            element("bdi", {}, name),
+            folder ? element("span", { class: "list_folder" }, ` ${folder}`) : null,
           ),
           marks,
         ),
@@ -163,11 +165,20 @@ export class SideList {
   }
 }
 
+const one: Record<Kind, string> = { recordings: "recording", studies: "study", sessions: "session" };
 const none: Record<Kind, string> = {
   recordings: "No recording yet: the scope makes them, and so do kerf record and kerf import.",
   studies: "No study yet: kerf study new makes one.",
   sessions: "No session yet: kerf session new makes one.",
 };
+
+/** What a file is called and where it lies: "cut" and "day_2"; of a study's "recording.h5" the other way round. */
+function inShort(path: string): [string, string] {
+  const parts = path.split("/");
+  const file = (parts.pop() ?? path).replace(/\.h5$/, "");
+  const folder = parts.pop() ?? "";
+  return file === "recording" && folder ? [folder, file] : [file, folder];
+}
 
 const alarming = ["flagged", "not closed", "unreadable", "changed"];
 
