@@ -45,6 +45,7 @@ export async function furnish(studio) {
   };
   return {
     recording,
+    another: await studio.id("recordings", "another_cut.h5"),
     punch: await studio.id("recordings", "punch.h5"),
     device: await studio.id("files", "axis/identify.json"),
     study: (await studio.api("/api/studies")).json[0].id,
@@ -69,14 +70,17 @@ export const tests = {
     const places = {
       scope: "scope",
       recordings: "recordings",
-      recording: `recordings/${ids.recording}`,
-      editor: `editor/${ids.recording}`,
-      fits: `fits/${ids.fit}`,
-      chart: `chart/${ids.chart}`,
+      recording: `recording/${ids.recording}/time`,
+      overlay: `recording/${ids.recording}/time?over=${ids.another}&align=cycle`,
+      loops: `recording/${ids.recording}/loop?loops=average&over=${ids.another}`,
+      editor: `recording/${ids.recording}/law`,
+      fits: `recording/${ids.recording}/fits?fit=${ids.fit}`,
+      chart: `recording/${ids.recording}/chart?chart=${ids.chart}`,
+      report: `recording/${ids.recording}/report`,
       stability: `stability/${ids.stability}`,
       sessions: "sessions",
       device: `devices/${ids.device}`,
-      flags: `recordings/${ids.punch}`,
+      flags: `recording/${ids.punch}/time`,
       study: `studies/${ids.study}`,
     };
     const complaints = [];
@@ -102,6 +106,14 @@ export const tests = {
           await page.click("#tab_cycles");
           await page.waitForSelector(".inspection table");
           await look("inspect");
+        }
+        if (name === "recordings") {
+          await page.keyboard.press("?");
+          await look("keys");
+          await page.keyboard.press("?");
+          await page.keyboard.press("Control+k");
+          await page.keyboard.type("cut");
+          await look("palette");
         }
         expectNoComplaints(page);
         await page.context().close();

@@ -12,7 +12,7 @@ import { furnish } from "./looks_pages.mjs";
 const root = new URL("../../../../", import.meta.url).pathname;
 const api = join(root, "bench/studio/page/src/api");
 
-/** Answers that are files of the program's verbs, whose formats grow: the page's types name what it uses of them. */
+/** Answers that are what the program's verbs write, whose formats grow: the page's types name what it uses of them. */
 const loose = "Loose";
 
 /** [route, type, parameters or body]; without a type: no JSON of the page, and why. */
@@ -24,8 +24,8 @@ function routesOf(it) {
     ["GET /api/workspace", "{ unchanged: true }", { unless: it.state }],
     ["GET /api/recording", "Recording", { id: recording }],
     ["GET /api/recording", "Recording", { id: it.punch }],
-    ["GET /api/recording/inspection", "RecordingInspection", { id: recording }],
-    ["GET /api/recording/inspection", "RecordingInspection", { id: it.punch }],
+    ["GET /api/recording/inspection", `${loose}<RecordingInspection>`, { id: recording }],
+    ["GET /api/recording/inspection", `${loose}<RecordingInspection>`, { id: it.punch }],
     ["GET /api/recording/loops", "Loops", { id: recording, axis: 0, first: 1, count: 2 }],
     ["GET /api/recording/thumbnail", "Thumbnail", { id: recording }],
     ["GET /api/recording/thumbnail", "Thumbnail", { id: it.punch }],
@@ -46,8 +46,8 @@ function routesOf(it) {
     ["GET /api/result", `${loose}<StabilityFile>`, { id: stability }],
     ["GET /api/result", `${loose}<DeviceFile>`, { id: device }],
     ["GET /api/studies", "StudyEntry[]", {}],
-    ["GET /api/study", "Study", { id: study }],
-    ["GET /api/study/drawn", "Figure", { id: study, name: "skin_s5" }],
+    ["GET /api/study", `${loose}<Study>`, { id: study }],
+    ["GET /api/study/drawn", `${loose}<Figure>`, { id: study, name: "skin_s5" }],
     ["GET /api/study/report", null, "a document"],
     ["GET /api/study/table", null, "a table"],
     ["GET /api/session", "SessionState", {}],

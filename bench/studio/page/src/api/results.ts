@@ -213,6 +213,7 @@ export interface LawView {
   position_unit: string;
   force_unit: string;
   equation: string;
+  contact: { position: number; direction: number };
   options: Record<string, boolean | number | string>;
   parameters: { name: string; value: number; unit: string; std_error: number | null; meaning: string }[];
   toml: string;
