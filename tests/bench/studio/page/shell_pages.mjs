@@ -1,7 +1,7 @@
 // What is around every page: the address that holds what is seen, tabs, the list at the left, commands and keys, and how much
 // of the window is left to the data.
 
-import { copyFile, readFile, rm } from "node:fs/promises";
+import { copyFile, mkdir, readFile, rm } from "node:fs/promises";
 import { join } from "node:path";
 
 import { audit } from "./accessibility.mjs";
@@ -226,6 +226,32 @@ export const tests = {
       const share = (box.width * box.height) / (1280 * 720);
       expect(share >= 0.7, `${tab}: ${(100 * share).toFixed(1)} % of the window`);
     }
+  },
+
+  async "names as long as files may have break no page"({ browser, studio }) {
+    const folder = join(studio.folder, "a_folder_with_a_long_name", "and_one_below_it_that_is_longer_still");
+    await mkdir(folder, { recursive: true });
+    const law = new URL("../../../../examples/kelvin.law.toml", import.meta.url);
+    await copyFile(law, join(folder, `${"a_law_of_many_words_".repeat(8)}.law.toml`));
+    const page = await prepare({ browser, studio });
+    const long = `${"a_recording_of_many_words_".repeat(6)}.h5`;
+    await copyFile(join(studio.folder, "cut.h5"), join(folder, long));
+    for (const width of [1024, 1280]) {
+      await page.setViewportSize({ width, height: 720 });
+      for (const tab of tabs) {
+        await open(page, studio, `a_folder_with_a_long_name/and_one_below_it_that_is_longer_still/${long}`, tab);
+        await page.waitForTimeout(500);
+        const over = await page.evaluate(() =>
+          ["html", "#side", "#view", ".tab_panel"].filter((it) => {
+            const node = document.querySelector(it);
+            return node.scrollWidth > node.clientWidth;
+          }),
+        );
+        expectEqual(over, [], `what is wider than its place, ${tab} at ${width}`);
+        expect(await page.locator("#tab_report").isVisible(), "all tabs are in sight");
+      }
+    }
+    expectNoComplaints(page);
   },
 
   async "every tab can be used from 640 to 2560 pixels, by keys and by a screen reader"({ browser, studio }) {

@@ -108,6 +108,7 @@ export class Shell {
       return;
     }
     this.end();
+    void this.store.look(); // what the page before has written
     this.shown = { view, id: address.id };
     this.notice.say("");
     for (const [name, link] of this.links) {

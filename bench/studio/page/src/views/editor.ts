@@ -97,14 +97,12 @@ function edit(
   });
   const found = curve.segmented_here ? ", found here: the recording is not segmented" : "";
   const cycles = `${curve.cycles} ${curve.cycles === 1 ? "cycle" : "cycles"}${found}`;
+  tools.root.append(
+    recording.axes.length > 1 ? element("div", { class: "axis_choice" }, labelled("Axis", choice)) : "",
+    element("p", { class: "quiet" }, cycles),
+  );
   canvas.plot.svg.setAttribute("aria-describedby", "editor_keys");
   root.append(
-    element(
-      "div",
-      { class: "heading" },
-      element("p", { class: "quiet" }, cycles),
-      recording.axes.length > 1 ? labelled("Axis", choice) : null,
-    ),
     tools.root,
     element(
       "div",
@@ -166,7 +164,7 @@ export function editorOf(root: HTMLElement, context: Context, recording: OpenRec
         context.state.set({ [stateKeys.axis]: other }, "push");
         void load(other, true);
       });
-      if (byHand) root.querySelector<HTMLSelectElement>(".heading select")?.focus();
+      if (byHand) root.querySelector<HTMLSelectElement>(".axis_choice select")?.focus();
     } catch (error) {
       root.replaceChildren(element("p", { class: "empty" }, error instanceof Error ? error.message : String(error)));
     }
