@@ -152,10 +152,17 @@ export const tests = {
     for (const key of ["ArrowDown", "ArrowDown", "ArrowDown", "Enter"]) await page.keyboard.press(key);
     await until("the third line is open", async () => (await page.textContent("h1")) === "third.h5");
     await page.waitForSelector('.list_row[aria-current=page]:has-text("third")');
+    studio.kerfOrThrow("segment", "third.h5", "--corner", "15");
+    await until("the page says that it has changed", async () =>
+      (await page.textContent("#notice")).startsWith("third.h5 has changed in the folder"),
+    );
+    await page.keyboard.press("r");
+    await until("it is read anew", () => page.locator("#notice_strip").isHidden());
     await rm(join(studio.folder, "third.h5"));
     await until("one that is gone leaves the list", async () => !(await rows(page)).includes("third"));
-    await page.click("#tab_loop");
-    await until("the page says so", async () => /no such recording/.test(await page.textContent("#notice")));
+    await until("the page says so", async () =>
+      (await page.textContent("#notice")).startsWith("third.h5 is not in the folder any more"),
+    );
     await page.click("#notice_close");
     expect(await page.locator("#notice_strip").isHidden(), "the message can be put away");
     expectNoComplaints(page, [/404/]);

@@ -1,5 +1,5 @@
 import type { Recording, RecordingInspection } from "../api/recordings";
-import type { Workspace } from "../api/workspace";
+import type { Workspace, WorkspaceRecording } from "../api/workspace";
 import { element } from "../ui/dom";
 import type { Context, OpenRecording, PageContext } from "../ui/view";
 import { factsInShort } from "./facts";
@@ -13,6 +13,7 @@ export class RecordingPage {
   private readonly strip: TabStrip;
   private readonly panel = element("div", { class: "tab_panel", role: "tabpanel", id: "tab_panel" });
   private recording: OpenRecording | null = null;
+  private said = ""; // of the file that has changed
   private end: () => void = () => {};
 
   constructor(
@@ -23,7 +24,9 @@ export class RecordingPage {
     this.head.textContent = "Recording";
     root.append(element("div", { class: "recording_head" }, this.head, this.strip.root, this.facts), this.panel);
     context.onTab(() => this.show());
+    context.onFolder((workspace) => this.compare(workspace));
     context.offer(
+      { title: "Read the recording anew", group: "Recording", keys: "r", run: () => void this.open() },
       ...recordingTabs.map((tab, k) => ({
         title: `Show the tab ${tab.title}`,
         group: "Recording",
@@ -60,6 +63,8 @@ export class RecordingPage {
       ]);
       const name = workspace.recordings.find((it) => it.id === id)?.name ?? id;
       this.recording = { id, name, about, workspace, inspection: this.inspectOnce(id), reload: () => void this.open() };
+      if (this.said) this.context.say("");
+      this.said = "";
       this.head.textContent = name;
       this.head.title = name;
       this.facts.textContent = factsInShort(about);
@@ -71,6 +76,21 @@ export class RecordingPage {
       const why = error instanceof Error ? error.message : String(error);
       this.panel.replaceChildren(element("p", { class: "empty" }, `${why}. Choose another in the list.`));
     }
+  }
+
+  /** With what is in the folder now: the page shows what was read, and says so when that is not what is there. */
+  private compare(workspace: Workspace): void {
+    if (!this.recording) return;
+    const { id, name, workspace: read } = this.recording;
+    const then = read.recordings.find((it) => it.id === id);
+    const now = workspace.recordings.find((it) => it.id === id);
+    const said = !now
+      ? `${name} is not in the folder any more: what is shown was read before.`
+      : !now.partial && then && isNewer(now, then)
+        ? `${name} has changed in the folder: press R to read it anew.`
+        : "";
+    if (said && said !== this.said) this.context.say(said);
+    this.said = said;
   }
 
   /** Begins the tab of the address; what is there of the one before ends. */
@@ -129,4 +149,9 @@ function forTab(page: PageContext): { context: Context; end: () => void } {
       for (const it of ends) it();
     },
   };
+}
+
+/** Times are told in whole seconds. */
+function isNewer(now: WorkspaceRecording, then: WorkspaceRecording): boolean {
+  return now.modified > then.modified || (now.modified === then.modified && now.bytes !== then.bytes);
 }
