@@ -65,7 +65,11 @@ export class RecordingPage {
       this.recording = { id, name, about, workspace, inspection: this.inspectOnce(id), reload: () => void this.open() };
       if (this.said) this.context.say("");
       this.said = "";
-      this.head.textContent = name;
+      const file = name.lastIndexOf("/") + 1;
+      this.head.replaceChildren(
+        element("span", { class: "head_folder" }, name.slice(0, file)),
+        element("span", { class: "head_file" }, name.slice(file)),
+      );
       this.head.title = name;
       this.facts.textContent = factsInShort(about);
       this.facts.title = this.facts.textContent;
