@@ -177,7 +177,7 @@ function inShort(path: string): [string, string] {
   const parts = path.split("/");
   const file = (parts.pop() ?? path).replace(/\.h5$/, "");
   const folder = parts.pop() ?? "";
-  return file === "recording" && folder ? [folder, file] : [file, folder];
+  return /^recording$/.test(file) && folder ? [folder, file] : [file, folder];
 }
 
 const alarming = ["flagged", "not closed", "unreadable", "changed"];
