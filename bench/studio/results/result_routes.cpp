@@ -14,9 +14,13 @@
 #include "chart/fit_plan.h"
 #include "files/for_terminal.h"
 #include "files/named_file.h"
+#include "inspect/counted_rows.h"
 #include "laws/law_file.h"
 #include "plot/chart_json.h"
 #include "recordings/axes.h"
+#include "results/asked_fit_json.h"
+#include "results/force_interval.h"
+#include "results/law_files.h"
 #include "results/law_view.h"
 #include "results/residuals.h"
 #include "results/result_jobs.h"
@@ -61,11 +65,14 @@ HttpResponse order(Jobs& jobs, JobOrder job) { return json_response({{"job", job
 
 HttpResponse order_fit(const HttpRequest& request, Workspace& workspace, Jobs& jobs) {
   const nlohmann::json given = json_in(request);
-  FitRequest fit{.recording = recording_in(given, workspace),
-                 .axis = text_or(given, "axis", ""),
-                 .models = models_in(given),
-                 .folds = given.contains("folds") ? whole_number_in(given, "folds", 0.0, 100.0) : 5};
-  if (fit.folds == 1) throw RequestError(400, "'folds' is 0 for none, or 2 to 100");
+  FitRequest fit{.recording = recording_in(given, workspace), .asked = asked_fit_in(given)};
+  fit.asked.options.models = models_in(given);
+  try {
+    check(fit.asked, 1);
+    (void)parse_cycle_choice(fit.asked.cycles);
+  } catch (const std::invalid_argument& error) {
+    throw RequestError(400, error.what());
+  }
   return order(jobs, fit_job(workspace, std::move(fit)));
 }
 
@@ -159,13 +166,26 @@ HttpResponse law(const HttpRequest& request, Workspace& workspace) {
   return json_response(law_as_json(read_law_file(entry.path), entry.name));
 }
 
+/// What the fit beside a law says of how well it is known; nothing where there is none, or another's.
+std::optional<FitUncertainty> uncertainty_of(const std::filesystem::path& law) {
+  try {
+    const std::filesystem::path fit = law.parent_path() / "fit.json";
+    if (!std::filesystem::exists(fit)) return std::nullopt;
+    return uncertainty_in(nlohmann::ordered_json::parse(read_named_file(fit, largest_result)),
+                          law.filename().string());
+  } catch (const std::exception&) {
+    return std::nullopt;  // whoever asks for the fit itself is told
+  }
+}
+
 HttpResponse residuals(const HttpRequest& request, Workspace& workspace) {
   const WorkspaceEntry file = workspace.find(text_in_query(request, "id"), FileKind::recording);
   const WorkspaceEntry law_file = workspace.find(text_in_query(request, "law"), FileKind::law);
   const std::size_t columns = count_in_query(request, "columns", max_residual_columns);
   const schema::Recording recording = schema::read_recording(file.path);
   const std::size_t axis = find_axis(recording, text_in_query(request, "axis"));
-  return json_response(residuals_of(recording, axis, read_law_file(law_file.path), columns));
+  return json_response(
+      residuals_of(recording, axis, read_law_file(law_file.path), columns, uncertainty_of(law_file.path)));
 }
 
 HttpResponse stop(const HttpRequest& request, Jobs& jobs) {
@@ -190,9 +210,13 @@ void add_result_routes(Routes& routes, Workspace& workspace, Jobs& jobs) {
       return take(request, workspace, jobs);
     });
   }
+  routes.get("/api/laws/hosts", Pace::at_once, [](const HttpRequest&) { return hosts_list(); });
   routes.get("/api/laws/fitted", Pace::at_once, [](const HttpRequest&) { return fitted_laws_list(); });
-  for (const auto& [path, view] : std::array<std::pair<const char*, View>, 3>{
-           {{"/api/result", result}, {"/api/law", law}, {"/api/residuals", residuals}}}) {
+  for (const auto& [path, view] :
+       std::array<std::pair<const char*, View>, 4>{{{"/api/result", result},
+                                                    {"/api/law", law},
+                                                    {"/api/law/exported", exported_law},
+                                                    {"/api/residuals", residuals}}}) {
     routes.get(path, Pace::slow,
                [&workspace, view = view](const HttpRequest& request) { return view(request, workspace); });
   }

@@ -91,7 +91,7 @@ export const tests = {
     await openRecording(page, studio, "cut.h5");
     await until("the whole is asked for", () => asked.length > 0);
     const width = await page
-      .locator(".u-over")
+      .locator(".time_over")
       .first()
       .evaluate((it) => it.clientWidth);
     expect(Math.abs(Number(asked[0].columns) - width) <= 1, `${asked[0].columns} columns for ${width} pixels`);
@@ -124,8 +124,8 @@ export const tests = {
     await until("cycles are there", async () => /^Cycles 1 to \d+ of \d+/.test(await text()));
     await page.selectOption(".recording_loops select >> nth=0", "one");
     await until("the first", async () => (await text()).startsWith("Cycle 1 of"));
-    await page.focus(".loops_frame");
-    await page.keyboard.press("ArrowRight");
+    await page.focus(".loops_frame svg.xy_plot");
+    await page.keyboard.press("]");
     await until("the second", async () => (await text()).startsWith("Cycle 2 of"));
     await page.selectOption(".recording_loops select >> nth=0", "average");
     await until("the average", async () => (await page.locator(".loops_frame .curve").count()) === 2);

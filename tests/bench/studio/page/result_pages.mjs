@@ -81,13 +81,16 @@ async function testFits(page, studio) {
   );
   const rmse = written.fits.find((it) => it.model === "exponential").rmse;
   const shown = await until("residuals are shown", async () =>
-    /Error ([\d.]+) mN/.exec((await page.textContent(".residuals .figures")) ?? ""),
+    /exponential: Error ([\d.]+) mN/.exec((await page.textContent(".residuals .figures")) ?? ""),
   );
   expect(
     Math.abs(Number(shown[1]) / (1000 * rmse) - 1) < 0.01,
     `residuals of ${shown[1]} mN are the fit's ${1000 * rmse} mN`,
   );
-  expect((await page.locator(".residuals .extremes").getAttribute("d")).length > 1000, "residuals are drawn over time");
+  expect(
+    (await page.locator(".residuals .extremes.exponential").getAttribute("d")).length > 1000,
+    "residuals are drawn over time",
+  );
   expectEqual(
     await page.locator(".detail svg.interval").count(),
     Object.keys(written.fits[0].parameters).length,
@@ -249,7 +252,7 @@ async function testDevice(page, studio) {
   expect(titles.length === 5 && titles[4].startsWith("Z-width"), `response, coherence, friction, Z-width: ${titles}`);
   const marks = axis.charts[0].figure.curves.find((it) => it.mark === "points").x.length;
   expectEqual(
-    await page.locator("main figure").first().locator(".over .mark").count(),
+    await page.locator("main figure").first().locator(".plot .mark").count(),
     marks,
     "points of the response",
   );

@@ -60,7 +60,7 @@ export const tests = {
     const page = await openScope(browser, studio);
     await startLoop(page);
     await page.getByRole("button", { name: "Pause" }).click();
-    const plots = page.locator(".uplot canvas").first();
+    const plots = page.locator(".time_over canvas").first();
     const look = async () => (await plots.screenshot()).toString("base64");
     await page.waitForTimeout(300);
     const still = await look();

@@ -138,7 +138,7 @@ export const tests = {
           );
       }).observe({ type: "layout-shift" });
     });
-    const box = await page.locator(".u-over").first().boundingBox();
+    const box = await page.locator(".time_over").first().boundingBox();
     await page.mouse.move(box.x + 200, box.y + 20);
     await page.mouse.move(box.x + 300, box.y + 20, { steps: 10 });
     await page.keyboard.press("Escape");

@@ -55,8 +55,8 @@ export const tests = {
     const [seen, address] = [await reading(page), page.url()];
     await page.click("#tab_loop");
     await page.selectOption(".recording_loops select >> nth=0", "one");
-    await page.focus(".loops_frame");
-    await page.keyboard.press("ArrowRight");
+    await page.focus(".loops_frame svg.xy_plot");
+    await page.keyboard.press("]");
     await until("the cycle is in the address", async () => (await hash(page)).includes("cycle=2"));
     const loop = page.url();
 

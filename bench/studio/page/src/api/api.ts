@@ -39,6 +39,14 @@ export class Api {
     return this.read(path, parameters, signal, async (answer) => traceView(await answer.arrayBuffer()));
   }
 
+  /** A file, as the server has it. */
+  async file(path: string, parameters: Parameters): Promise<{ content: Blob; type: string }> {
+    return this.read(path, parameters, undefined, async (answer) => ({
+      content: await answer.blob(),
+      type: answer.headers.get("Content-Type") ?? "",
+    }));
+  }
+
   /** Server-sent events; the browser connects again by itself. */
   stream(path: string, parameters: Parameters = {}): EventSource {
     return new EventSource(address(path, { ...parameters, token: this.token }));

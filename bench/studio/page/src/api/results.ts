@@ -41,7 +41,10 @@ export interface LawFit {
   r2: number;
   bic: number;
   cv_rmse: number | null;
-  cv_rmse_rendered?: number | null; // missing in files of earlier versions
+  cv_rmse_rendered?: number | null; // missing in files of earlier versions, as the next
+  cv_std_error?: number | null;
+  test_rmse?: number | null; // of what no fit has seen
+  test_rmse_rendered?: number | null;
   blame?: string; // what is to blame for its error, where it is not within the JND
   jnd_fraction: number;
   correlation: { parameters: string[]; matrix: (number | null)[][] };
@@ -55,6 +58,7 @@ export interface FitFile {
   samples: number;
   settings: { folds: number; confidence: number };
   line_rmse: number;
+  floor?: { position: number | null; velocity: number | null; noise: number }; // what nothing errs by less than
   jnd: number;
   fits: LawFit[];
   refused: { model: string; why: string }[];
@@ -236,6 +240,16 @@ export interface Residuals {
   mean: (number | null)[];
   low: (number | null)[];
   high: (number | null)[];
+  over_time: {
+    measured_smallest: number[];
+    measured_largest: number[];
+    law_smallest: number[];
+    law_largest: number[];
+  };
+  /** Where its error lies, the largest share of the squared error first. */
+  places: { from_s: number; to_s: number; cycle?: number; phase?: string; rmse: number; share: number }[];
+  /** Half the width of the interval of the law's force; not there where a fit does not tell it. */
+  interval?: { confidence: number; closing: (number | null)[]; opening: (number | null)[] };
   loop: {
     measured_closing: (number | null)[];
     measured_opening: (number | null)[];

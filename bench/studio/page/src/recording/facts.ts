@@ -27,9 +27,9 @@ export function factsOf(recording: Recording): HTMLElement {
     { class: "facts" },
     fact("Device", recording.device),
     fact("Length", length(recording.seconds)),
-    fact("Rows", `${recording.rows.toLocaleString("en-GB")} every ${withUnit(recording.period_s, "s")}`),
+    fact("Rows", `${recording.rows.toLocaleString("en-GB")}, usually every ${withUnit(recording.period_s, "s")}`),
     fact("Status", recording.status),
-    fact("Recorded", date(recording.created)),
+    fact(recording.source ? "Imported" : "Recorded", date(recording.created)), // the file has no other time
     fact("Gaps", gaps > 0 ? gaps.toLocaleString("en-GB") : "none"),
     fact("By", recording.software),
     fact("From", recording.source),

@@ -11,6 +11,7 @@ export const stateKeys = {
   axis: "axis", // index
   cycle: "cycle", // number of the one that is chosen
   loops: "loops", // "all", "one" or "average"
+  beside: "beside", // recordings side by side instead of over each other
   fit: "fit", // id of the fit.json that is shown
   law: "law", // model or id of a law that is looked at
   laws: "laws", // several, by commas

@@ -1,32 +1,34 @@
+import "./loops.css";
+
 import type { Loops, Recording } from "../api/recordings";
 import { button, element, labelled, select } from "../ui/dom";
-import { swatch } from "../ui/time/time_plot";
-import { XyPlot, type PlotLine } from "../ui/xy_plot";
+import { figureOf, type Figure } from "../ui/figure_description";
+import { limitsOf } from "../ui/plot/frame";
+import { Plot } from "../ui/plot/plot";
+import { scaledFor } from "../ui/plot/scaled";
+import { rangeAround } from "../ui/plot/scale";
+import { loopCurves, type Kind } from "./loop_curves";
+import { namedOnce } from "./trace_groups";
 import { stateKeys } from "../recording/keys";
 import { Latest } from "../ui/latest";
 import type { Context } from "../ui/view";
 import type { Drawn } from "./recording_time";
 
-type Kind = "all" | "one" | "average";
 const atOnce = 60; // cycles
 
 /** Force against position: all cycles, one, or their average; of several recordings the averages. */
 export class RecordingLoops {
   readonly root: HTMLElement;
   readonly tools: HTMLElement;
-  private plot: XyPlot | null = null;
-  private readonly frame = element("div", {
-    class: "loops_frame",
-    tabindex: 0,
-    role: "group",
-    keydown: (it: KeyboardEvent) => this.key(it),
-  });
+  private plots: Plot[] = [];
+  private readonly frame = element("div", { class: "loops_frame", keydown: (it: KeyboardEvent) => this.key(it) });
   private readonly text = element("p", { class: "quiet loops_text", role: "status" });
-  private readonly key_ = element("ul", { class: "mark_legend", "aria-label": "Lines" });
   private readonly kind: HTMLSelectElement;
   private readonly axis: HTMLSelectElement;
-  private readonly previous = button("Previous", () => this.step(-1), { title: "Left arrow" });
-  private readonly next = button("Next", () => this.step(1), { title: "Right arrow" });
+  private readonly beside = element("input", { type: "checkbox", change: () => this.choose() });
+  private readonly previous = button("Previous", () => this.step(-1), { title: "Key: [" });
+  private readonly next = button("Next", () => this.step(1), { title: "Key: ]" });
+  private readonly besideLabel = element("label", { class: "tick" }, this.beside, "side by side");
   private drawn: readonly Drawn[] = [];
   private cycle = 0;
   private cycles = 0;
@@ -51,13 +53,14 @@ export class RecordingLoops {
       labelled("Axis", this.axis),
       this.previous,
       this.next,
+      this.besideLabel,
       this.text,
     );
-    this.root = element("div", { class: "recording_loops" }, this.tools, this.frame, this.key_);
+    this.root = element("div", { class: "recording_loops" }, this.tools, this.frame);
   }
 
   end(): void {
-    this.plot?.end();
+    for (const it of this.plots) it.end();
   }
 
   show(drawn: readonly Drawn[]): void {
@@ -85,6 +88,7 @@ export class RecordingLoops {
     const kind = state.get(stateKeys.loops) ?? (state.number(stateKeys.cycle) === null ? "all" : "one");
     this.kind.value = kind === "one" || kind === "average" ? kind : "all";
     this.axis.value = String(state.number(stateKeys.axis) ?? own.cycles?.axis ?? 0);
+    this.beside.checked = state.get(stateKeys.beside) !== null;
     this.cycle = Math.max(0, (state.number(stateKeys.cycle) ?? 1) - 1);
   }
 
@@ -102,6 +106,7 @@ export class RecordingLoops {
       [stateKeys.axis]: axis === own ? null : axis,
       [stateKeys.loops]: kind === "all" ? null : kind,
       [stateKeys.cycle]: kind === "one" ? this.cycle + 1 : null,
+      [stateKeys.beside]: this.beside.checked ? 1 : null,
     };
     this.context.state.set(values, step);
   }
@@ -117,9 +122,10 @@ export class RecordingLoops {
 
   private key(event: KeyboardEvent): void {
     if (event.ctrlKey || event.altKey || event.metaKey) return;
-    if (event.key !== "ArrowLeft" && event.key !== "ArrowRight") return;
+    const by = { "[": -1, "]": 1 }[event.key];
+    if (by === undefined) return;
     event.preventDefault();
-    this.step(event.key === "ArrowLeft" ? -1 : 1);
+    this.step(by);
   }
 
   private async load(): Promise<void> {
@@ -153,44 +159,59 @@ export class RecordingLoops {
     if (!own) return;
     this.cycles = own.cycles_in_all;
     const several = answers.length > 1;
-    const lines: PlotLine[] = [];
-    answers.forEach((loops, k) => {
-      if (!loops) return;
-      if (kind !== "average" && (k === 0 || kind === "one")) {
-        for (const it of loops.loops)
-          lines.push({ x: it.position, y: it.force, class: kind === "one" ? `look_${k}` : "many" });
-      }
-      if (kind === "average" || (k > 0 && kind === "all")) {
-        lines.push({ x: loops.average.position, y: loops.average.closing, class: `look_${k}` });
-        lines.push({ x: loops.average.position, y: loops.average.opening, class: `look_${k} second` });
-      }
-    });
-    this.replot(own);
-    this.plot?.show(lines, XyPlot.around(lines));
-    this.previous.disabled = kind === "average" || first === 0;
-    const shown = own.loops.length;
-    this.next.disabled = kind === "average" || first + shown >= own.cycles_in_all;
-    this.text.textContent = inWords(own, kind, first);
-    this.key_.replaceChildren(
-      ...(several ? this.drawn.map((it, k) => element("li", {}, swatch(k), it.name)) : []),
-      ...(kind === "average" ? [element("li", {}, "full line: closing; broken line: opening")] : []),
+    this.besideLabel.hidden = !several;
+    const name = (k: number): string => this.drawn[k]?.name ?? "";
+    const all = answers.flatMap((loops, k) => (loops ? [loopCurves(loops, kind, k, several ? name(k) : "")] : []));
+    const x = scaledFor(
+      namedOnce("position", own.axis),
+      own.position_unit,
+      all.flat().map((it) => it.x),
     );
+    const y = scaledFor(
+      namedOnce("force", own.axis),
+      own.force_unit,
+      all.flat().map((it) => it.y),
+    );
+    const apart = several && this.beside.checked;
+    const figures = (apart ? all : [all.flat()]).map((curves) => {
+      const drawn = curves.map((it) => ({ ...it, x: x.of(it.x), y: y.of(it.y) }));
+      return figureOf(x.label, y.label, { curves: drawn, notes: notesOf(kind) });
+    });
+    const names = apart
+      ? answers.flatMap((it, k) => (it ? [name(k)] : []))
+      : [this.drawn.map((it) => it.name).join(", ")];
+    this.plot(figures, names);
+    const none = kind === "average" || own.cycles_in_all === 0;
+    this.previous.disabled = none || first === 0;
+    const shown = own.loops.length;
+    this.next.disabled = none || first + shown >= own.cycles_in_all;
+    this.text.textContent = inWords(own, kind, first);
   }
 
-  private replot(loops: Loops): void {
-    const x = `position ${loops.axis} [${loops.position_unit}]`;
-    const y = `force ${loops.axis} [${loops.force_unit}]`;
-    if (this.frame.dataset.axes === x + y) return;
-    this.frame.dataset.axes = x + y;
-    this.plot?.end();
-    this.plot = new XyPlot({ label: x }, { label: y }, "Force against position");
-    this.frame.setAttribute("aria-label", "Force against position. Left and right arrow: the cycle before and after.");
-    this.frame.replaceChildren(this.plot.svg);
+  /** Side by side they have the same axes, so that they can be compared. */
+  private plot(figures: readonly Figure[], names: readonly string[]): void {
+    const title = (k: number): string => `Force against position: ${names[k] ?? ""}`;
+    if (this.plots.length !== figures.length || this.plots.some((it, k) => it.name !== title(k))) {
+      for (const it of this.plots) it.end();
+      this.plots = figures.map((_, k) => new Plot(title(k)));
+      this.frame.replaceChildren(...this.plots.map((it, k) => it.figure(figures.length > 1 ? names[k] : "")));
+    }
+    const all = figures.map(limitsOf);
+    const together = { x: rangeAround(all.map((it) => it.x)), y: rangeAround(all.map((it) => it.y)) };
+    figures.forEach((it, k) => this.plots[k]?.show(it, figures.length > 1 ? together : all[k]));
   }
+}
+
+function notesOf(kind: Kind): string[] {
+  if (kind === "average") return ["Averages of the cycles on a grid of positions."];
+  return [
+    "Of each cycle at most 600 points: of every stretch the first and last row and those of extreme position and force.",
+  ];
 }
 
 function inWords(loops: Loops, kind: Kind, first: number): string {
   const all = loops.cycles_in_all;
+  if (loops.whole) return `${loops.reason || "No cycles found."} All rows are drawn, decimated by their extremes.`;
   const found = loops.segmented_here ? ", found for this view" : "";
   if (all === 0) return loops.reason || "No cycles found.";
   if (kind === "average") return `Average of ${all} cycles${found}`;

@@ -1,7 +1,7 @@
 import type { Api } from "../api/api";
 import type { CycleSpan, Recording, RecordingInspection, Trace } from "../api/recordings";
 import { element } from "../ui/dom";
-import { dashes } from "../ui/palette";
+import { looks } from "../ui/palette";
 import { StretchLoader } from "../ui/time/stretch_loader";
 import type { Span, TimeMarks } from "../ui/time/time_marks";
 import type { TimeLine } from "../ui/time/time_line";
@@ -42,6 +42,7 @@ export class RecordingTime {
   ) {
     this.stack = new TimeStack({
       name: "The recording over time",
+      file: () => `${this.sources.map((it) => it.drawn.name.replace(/\.h5$/, "")).join(" ")} over time`,
       timeLabel: "time [s]",
       tools,
       changed: ({ from, to, first, last }) => {
@@ -181,7 +182,7 @@ function legend(): HTMLElement {
 }
 
 /** How many recordings can be told apart. */
-export const atMostDrawn = Math.min(5, dashes.length);
+export const atMostDrawn = Math.min(5, looks.length);
 
 /** A file's name without its folder and ending, shortened in the middle. */
 function shortName(name: string): string {

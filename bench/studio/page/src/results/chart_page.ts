@@ -16,7 +16,7 @@ const coldTail = (point: ChartPoint): number | null => (point.cold_ticks === und
 const fronts = (point: ChartPoint): string =>
   [point.on_front ? "median" : "", point.on_cold_front ? "cold" : ""].filter(Boolean).join(", ");
 
-function tableOf(points: readonly ChartPoint[], open: (point: ChartPoint) => void): HTMLElement {
+function tableOf(source: string, points: readonly ChartPoint[], open: (point: ChartPoint) => void): HTMLElement {
   const columns = [
     {
       head: "law",
@@ -30,16 +30,19 @@ function tableOf(points: readonly ChartPoint[], open: (point: ChartPoint) => voi
     },
     {
       head: "p50 [µs]",
+      file: "p50 [ns]",
       text: (point: ChartPoint) => microseconds(point.p50_ns),
       key: (point: ChartPoint) => point.p50_ns ?? 0,
     },
     {
       head: "p99.9 [µs]",
+      file: "p99.9 [ns]",
       text: (point: ChartPoint) => microseconds(point.p999_ns),
       key: (point: ChartPoint) => point.p999_ns ?? 0,
     },
     {
       head: "cold p99.9 [µs]",
+      file: "cold p99.9 [ns]",
       text: (point: ChartPoint) => microseconds(coldTail(point)),
       key: (point: ChartPoint) => coldTail(point) ?? Infinity,
     },
@@ -55,6 +58,7 @@ function tableOf(points: readonly ChartPoint[], open: (point: ChartPoint) => voi
     },
     {
       head: "outside [%]",
+      file: "share outside the JND [1]",
       text: (point: ChartPoint) => (point.jnd_fraction == null ? "–" : (100 * point.jnd_fraction).toFixed(1)),
       key: (point: ChartPoint) => point.jnd_fraction ?? Infinity,
     },
@@ -69,7 +73,7 @@ function tableOf(points: readonly ChartPoint[], open: (point: ChartPoint) => voi
       key: (point: ChartPoint) => fronts(point) || "none",
     },
   ];
-  return new SortableTable("Every point", columns, points, open).root;
+  return new SortableTable(`Every point of ${source}`, columns, points, open).root;
 }
 
 /** A chart as it was written: points that open their laws, and the choice of one beside it. */
@@ -119,7 +123,7 @@ export class ChartPage {
       ),
       element("div", { class: "two wide" }, this.plot.root, this.law.root),
       choice.root,
-      tableOf(chart.points, (point) => this.open(chart.points.indexOf(point))),
+      tableOf(chart.source, chart.points, (point) => this.open(chart.points.indexOf(point))),
       ...chart.notes.map((it) => element("p", { class: "quiet" }, it)),
     );
   }

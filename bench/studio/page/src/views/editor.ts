@@ -107,7 +107,12 @@ function edit(
     element(
       "div",
       { class: "sheet" },
-      element("div", { class: "plot card" }, canvas.plot.svg, legend()),
+      element(
+        "div",
+        { class: "plot card" },
+        canvas.plot.svg,
+        element("div", { class: "plot_bar" }, legend(), canvas.plot.menu()),
+      ),
       element(
         "div",
         { class: "side card" },
@@ -137,7 +142,7 @@ function legend(): HTMLElement {
     ["closing", "averaged closing"],
     ["opening", "averaged opening"],
     ["law", "law, closing"],
-    ["law dashed", "law, opening"],
+    ["law thin", "law, opening"],
   ];
   return element(
     "ul",

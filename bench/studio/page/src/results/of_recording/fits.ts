@@ -5,6 +5,7 @@ import { element, labelled, select } from "../../ui/dom";
 import { Latest } from "../../ui/latest";
 import type { Context, OpenRecording } from "../../ui/view";
 import { FitPage } from "../fit_page";
+import { FitOptions } from "../fit_options";
 import { JobList } from "../jobs";
 import { LawCheckboxes } from "../law_checkboxes";
 import { resultName } from "../names";
@@ -94,9 +95,9 @@ export class FitsOfRecording {
   private form(laws: FittedLaw[]): void {
     const { about } = this.recording;
     const boxes = new LawCheckboxes(laws);
-    const folds = element("input", { type: "number", min: 0, max: 100, step: 1, value: 5 });
     let axis = about.axes[about.cycles?.axis ?? 0];
     boxes.show(axis);
+    const options = new FitOptions(axis);
     const which = select(
       about.axes.map((it) => ({ value: it.name, text: it.name })),
       axis?.name ?? "",
@@ -107,7 +108,7 @@ export class FitsOfRecording {
       const models = boxes.chosen();
       if (models.length === 0) return this.context.complain(new Error("Choose a law to fit"));
       this.context.say("");
-      const order = { recording: this.recording.id, axis: axis?.name ?? "", models, folds: Number(folds.value) };
+      const order = { recording: this.recording.id, axis: axis?.name ?? "", models, ...options.given };
       void this.jobs.order("/api/fit", order, (file) => this.choose(file));
     };
     this.order.replaceChildren(
@@ -116,11 +117,11 @@ export class FitsOfRecording {
         "form",
         { class: "order", submit: start },
         boxes.root,
+        options.root,
         element(
           "div",
           { class: "row" },
           about.axes.length > 1 ? labelled("Axis", which) : null,
-          labelled("Folds that are held out by turns (0: none)", folds),
           element("button", { type: "submit", class: "firm" }, "Fit"),
         ),
       ),

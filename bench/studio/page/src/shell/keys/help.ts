@@ -6,8 +6,9 @@ import type { Commands } from "./commands";
 const keysOfParts: readonly (readonly [string, string])[] = [
   ["Escape", "zero force, from anywhere"],
   ["Space", "scope: pause, go on"],
-  ["← →", "plot: move the cursor; loops: the cycle before, after"],
-  ["Shift + ← →, Page up, Page down", "plot: move along"],
+  ["← → ↑ ↓", "plot: move the cursor, from line to line"],
+  ["[ ]", "loops: the cycle before, after"],
+  ["Shift + arrows, Page up, Page down", "plot: move along"],
   ["+ −", "plot: show less, more; wheel, two fingers or dragging too"],
   ["0", "plot: show all; a double click too"],
   ["Home, End", "plot: the cursor to the left end, right end"],
