@@ -3,9 +3,11 @@
 #include <optional>
 #include <string_view>
 
+#include "cycles/cycle_routes.h"
 #include "editor/editor_routes.h"
 #include "http/http_server.h"
 #include "http/routes.h"
+#include "intake/intake_routes.h"
 #include "laws/law_file.h"
 #include "live/live_loop.h"
 #include "live/live_routes.h"
@@ -47,6 +49,8 @@ class Studio::State {
     add_live_routes(routes_, loop_, live_hooks());
     add_recording_routes(routes_, views_,
                          [this](const std::string& id) { return path_of(id, FileKind::recording); });
+    add_cycle_routes(routes_, workspace_, views_);
+    add_intake_routes(routes_, workspace_, jobs_, std::filesystem::read_symlink("/proc/self/exe"));
     add_editor_routes(routes_, workspace_, [this](const LawFile& law) { render(law); });
     add_result_routes(routes_, workspace_, jobs_);
     add_study_routes(routes_, workspace_);
