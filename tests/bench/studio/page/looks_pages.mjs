@@ -70,6 +70,7 @@ export const tests = {
     const places = {
       scope: "scope",
       recordings: "recordings",
+      import: "import",
       recording: `recording/${ids.recording}/time`,
       overlay: `recording/${ids.recording}/time?over=${ids.another}&align=cycle`,
       loops: `recording/${ids.recording}/loop?loops=average&over=${ids.another}`,

@@ -3,6 +3,7 @@ import { chart } from "../views/chart";
 import { devices } from "../views/devices";
 import { editor } from "../views/editor";
 import { fits } from "../views/fits";
+import { importView } from "../views/import";
 import { recording } from "../views/recording";
 import { recordings } from "../views/recordings";
 import { scope } from "../views/scope";
@@ -11,7 +12,7 @@ import { stability } from "../views/stability";
 import { studies } from "../views/studies";
 
 /** The pages of the bar, in its order. */
-export const pages: readonly View[] = [scope, recordings, stability, studies, sessions, devices];
+export const pages: readonly View[] = [scope, recordings, importView, stability, studies, sessions, devices];
 
 /** Reached by a link: a recording, and what addresses of earlier versions name. */
 export const hiddenPages: readonly View[] = [recording, editor, fits, chart];

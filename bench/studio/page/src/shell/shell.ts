@@ -1,4 +1,5 @@
 import type { Api } from "../api/api";
+import { watchDrops } from "../intake/dropped";
 import { element } from "../ui/dom";
 import type { PageContext, View } from "../ui/view";
 import type { Address } from "./address";
@@ -63,6 +64,7 @@ export class Shell {
       })),
     ]);
     new Shortcuts(this.commands);
+    watchDrops(() => this.goTo("#/import"));
     byId("skip").addEventListener("click", (event) => {
       event.preventDefault(); // the address is the page's place
       this.focusHead();

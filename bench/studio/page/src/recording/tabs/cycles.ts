@@ -1,24 +1,14 @@
-import { InspectionPanel } from "../../recordings/inspection_panel";
-import { element } from "../../ui/dom";
-import type { RecordingTab } from "../../ui/view";
-import { stateKeys } from "../keys";
+import "../../cycles/cycles.css";
 
-/** Each cycle with its numbers and flags, and what the recording is worth. */
+import { CyclesTab } from "../../cycles/cycles_tab";
+import type { RecordingTab } from "../../ui/view";
+
+/** Cycles found by other settings, mended and kept; below, what the recording is worth. */
 export const cyclesTab: RecordingTab = {
   name: "cycles",
   title: "Cycles",
   mount(root, context, recording) {
-    const worth = new InspectionPanel((from_s, to_s) =>
-      context.go("recording", recording.id, "time", {
-        [stateKeys.from]: String(from_s - 1),
-        [stateKeys.to]: String(to_s + 1),
-      }),
-    );
-    root.append(element("div", { class: "scrolling" }, worth.root));
-    recording.inspection().then(
-      (found) => context.signal.aborted || worth.show(found),
-      (error: unknown) => context.signal.aborted || worth.fail(error),
-    );
-    return () => {};
+    const tab = new CyclesTab(root, context, recording);
+    return () => tab.end();
   },
 };

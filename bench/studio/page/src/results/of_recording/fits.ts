@@ -1,5 +1,6 @@
 import type { FitFile, FittedLaw } from "../../api/results";
 import type { Workspace } from "../../api/workspace";
+import { EarlierFits } from "../../cycles/earlier_fits";
 import { stateKeys } from "../../recording/keys";
 import { element, labelled, select } from "../../ui/dom";
 import { Latest } from "../../ui/latest";
@@ -19,6 +20,7 @@ export class FitsOfRecording {
   private readonly shown = element("div", { class: "result" });
   private readonly jobs: JobList;
   private readonly latest: Latest;
+  private readonly earlier: EarlierFits;
   private page: FitPage | null = null;
 
   constructor(
@@ -27,7 +29,13 @@ export class FitsOfRecording {
   ) {
     this.latest = new Latest(context.signal);
     this.jobs = new JobList(context, ["fit"]);
-    this.root.append(element("div", { class: "tab_tools" }, this.head, this.order), this.jobs.root, this.shown);
+    this.earlier = new EarlierFits(context, recording);
+    this.root.append(
+      element("div", { class: "tab_tools" }, this.head, this.order),
+      this.jobs.root,
+      this.earlier.root,
+      this.shown,
+    );
     context.state.onChange(() => void this.show());
     void this.show();
     void this.offer();
@@ -56,6 +64,7 @@ export class FitsOfRecording {
       this.page?.end();
       this.page = file && fit ? new FitPage(this.context, workspace, file, fit) : null;
       this.order.open = !this.page;
+      this.earlier.show(file?.id ?? "none");
       this.head.replaceChildren(
         files.length > 0
           ? labelled(
