@@ -18,7 +18,7 @@
 namespace kerf::bench {
 namespace {
 
-using json = nlohmann::ordered_json;
+using Json = nlohmann::ordered_json;
 
 constexpr std::size_t bins = 60;
 constexpr std::size_t fewest_in_bin = 5;
@@ -32,8 +32,8 @@ class Binned {
     squares_[bin] += value * value;
   }
   /// Mean and so many standard deviations above it; null where there are few.
-  [[nodiscard]] json means(double deviations = 0.0) const {
-    json list = json::array();
+  [[nodiscard]] Json means(double deviations = 0.0) const {
+    Json list = Json::array();
     for (std::size_t bin = 0; bin < bins; ++bin) {
       if (count_[bin] < fewest_in_bin) {
         list.push_back(nullptr);
@@ -64,10 +64,10 @@ void check_units(const LawFile& law, const schema::Axis& axis) {
 }
 
 void add_over_time(const AxisSeries& series, const std::vector<double>& residual, std::size_t columns,
-                   json& to) {
+                   Json& to) {
   const std::size_t rows = residual.size();
   const std::size_t count = std::clamp<std::size_t>(columns, 1, rows);
-  std::array<json, 3> lists{json::array(), json::array(), json::array()};
+  std::array<Json, 3> lists{Json::array(), Json::array(), Json::array()};
   for (std::size_t column = 0; column < count; ++column) {
     const auto begin = static_cast<std::ptrdiff_t>(column * rows / count);
     const auto end = static_cast<std::ptrdiff_t>((column + 1) * rows / count);
@@ -81,7 +81,7 @@ void add_over_time(const AxisSeries& series, const std::vector<double>& residual
   to["largest"] = std::move(lists[2]);
 }
 
-void add_over_penetration(const AxisSeries& series, const std::vector<double>& force, json& to) {
+void add_over_penetration(const AxisSeries& series, const std::vector<double>& force, Json& to) {
   const auto [least, most] = std::minmax_element(series.penetration.begin(), series.penetration.end());
   const double first = *least;
   const double width = std::max(1e-12, (*most - first) / static_cast<double>(bins));
@@ -96,7 +96,7 @@ void add_over_penetration(const AxisSeries& series, const std::vector<double>& f
     measured[branch].add(bin, series.force[i]);
     by_law[branch].add(bin, force[i]);
   }
-  json penetration = json::array();
+  Json penetration = Json::array();
   for (std::size_t bin = 0; bin < bins; ++bin)
     penetration.push_back(first + width * (static_cast<double>(bin) + 0.5));
   to["penetration"] = std::move(penetration);
@@ -111,7 +111,7 @@ void add_over_penetration(const AxisSeries& series, const std::vector<double>& f
 
 }  // namespace
 
-json residuals_of(const schema::Recording& recording, std::size_t axis, const LawFile& law,
+Json residuals_of(const schema::Recording& recording, std::size_t axis, const LawFile& law,
                   std::size_t columns) {
   const schema::Axis& about = recording.axes.at(axis);
   check_units(law, about);
@@ -129,7 +129,7 @@ json residuals_of(const schema::Recording& recording, std::size_t axis, const La
     squares += residual.back() * residual.back();
     worst = std::max(worst, std::abs(residual.back()));
   }
-  json result{{"axis", about.name},
+  Json result{{"axis", about.name},
               {"position_unit", about.position_unit},
               {"force_unit", about.force_unit},
               {"rows", counted},

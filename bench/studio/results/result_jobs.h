@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "choose/candidates.h"
-#include "results/jobs.h"
+#include "jobs/jobs.h"
 #include "stability/study.h"
 #include "workspace/workspace.h"
 

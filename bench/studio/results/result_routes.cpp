@@ -57,7 +57,11 @@ WorkspaceEntry recording_in(const nlohmann::json& object, Workspace& workspace) 
   return workspace.find(text_in(object, "recording"), FileKind::recording);
 }
 
-HttpResponse order(Jobs& jobs, JobOrder job) { return json_response({{"job", jobs.add(std::move(job))}}); }
+/// What was asked for stands in the job's record, so that a page can ask for it again.
+HttpResponse order(Jobs& jobs, const HttpRequest& request, const nlohmann::json& given, JobOrder job) {
+  job.again = {.path = request.path, .body = given};
+  return json_response({{"job", jobs.add(std::move(job))}});
+}
 
 HttpResponse order_fit(const HttpRequest& request, Workspace& workspace, Jobs& jobs) {
   const nlohmann::json given = json_in(request);
@@ -66,14 +70,15 @@ HttpResponse order_fit(const HttpRequest& request, Workspace& workspace, Jobs& j
                  .models = models_in(given),
                  .folds = given.contains("folds") ? whole_number_in(given, "folds", 0.0, 100.0) : 5};
   if (fit.folds == 1) throw RequestError(400, "'folds' is 0 for none, or 2 to 100");
-  return order(jobs, fit_job(workspace, std::move(fit)));
+  return order(jobs, request, given, fit_job(workspace, std::move(fit)));
 }
 
 HttpResponse order_chart(const HttpRequest& request, Workspace& workspace, Jobs& jobs) {
   const nlohmann::json given = json_in(request);
-  return order(jobs, chart_job(workspace, {.recording = recording_in(given, workspace),
-                                           .axis = text_or(given, "axis", ""),
-                                           .models = models_in(given)}));
+  return order(jobs, request, given,
+               chart_job(workspace, {.recording = recording_in(given, workspace),
+                                     .axis = text_or(given, "axis", ""),
+                                     .models = models_in(given)}));
 }
 
 HttpResponse order_choice(const HttpRequest& request, Workspace& workspace, Jobs& jobs) {
@@ -83,7 +88,7 @@ HttpResponse order_choice(const HttpRequest& request, Workspace& workspace, Jobs
                        .rate_hz = number_or(given, "rate_hz", 1000.0, 100.0, 10000.0)};
   if (given.contains("most_segments"))
     choice.max_segments = whole_number_in(given, "most_segments", 1.0, 16.0);
-  return order(jobs, choice_job(workspace, std::move(choice)));
+  return order(jobs, request, given, choice_job(workspace, std::move(choice)));
 }
 
 HttpResponse order_stability(const HttpRequest& request, Workspace& workspace, Jobs& jobs) {
@@ -105,7 +110,7 @@ HttpResponse order_stability(const HttpRequest& request, Workspace& workspace, J
   study.range.speed_m_s = number_or(given, "speed_m_s", study.range.speed_m_s, 1e-4, 10.0);
   const std::string law = text_or(given, "law", "");
   if (!law.empty()) stability.law = workspace.find(law, FileKind::law);
-  return order(jobs, stability_job(workspace, std::move(stability)));
+  return order(jobs, request, given, stability_job(workspace, std::move(stability)));
 }
 
 /// A result, whichever kind it is of. @throws RequestError 404.
@@ -168,19 +173,11 @@ HttpResponse residuals(const HttpRequest& request, Workspace& workspace) {
   return json_response(residuals_of(recording, axis, read_law_file(law_file.path), columns));
 }
 
-HttpResponse stop(const HttpRequest& request, Jobs& jobs) {
-  jobs.stop(whole_number_in(json_in(request), "job", 0.0, 1e15));
-  return json_response(nlohmann::ordered_json::object());
-}
-
 }  // namespace
 
 void add_result_routes(Routes& routes, Workspace& workspace, Jobs& jobs) {
   using Order = HttpResponse (*)(const HttpRequest&, Workspace&, Jobs&);
   using View = HttpResponse (*)(const HttpRequest&, Workspace&);
-  routes.get("/api/jobs", Pace::at_once, [&jobs](const HttpRequest&) { return json_response(jobs.list()); });
-  routes.post("/api/jobs/stop", Pace::at_once,
-              [&jobs](const HttpRequest& request) { return stop(request, jobs); });
   for (const auto& [path, take] :
        std::array<std::pair<const char*, Order>, 4>{{{"/api/fit", order_fit},
                                                      {"/api/chart", order_chart},

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/studio/results/finished_jobs.h"
+#include "bench/studio/jobs/finished_jobs.h"
 #include "laws/law_file.h"
 #include "support/program.h"
 #include "support/recordings.h"

@@ -8,7 +8,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/studio/results/finished_jobs.h"
+#include "bench/studio/jobs/finished_jobs.h"
+#include "jobs/job_routes.h"
 #include "laws/law_file.h"
 #include "support/program.h"
 #include "support/recordings.h"
@@ -31,6 +32,7 @@ class ResultRoutes : public testing::Test {
     std::filesystem::create_directory(folder_ / "old.fit");
     test::write_text(folder_ / "old.fit/fit.json", R"({"jnd": 0.1})");
     add_result_routes(routes_, workspace_, jobs_);
+    add_job_routes(routes_, jobs_);
     add_workspace_routes(routes_, workspace_, "sim:scissors");
   }
 

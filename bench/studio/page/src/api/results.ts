@@ -1,16 +1,6 @@
 import type { Figure } from "../ui/figure_description";
 
-// Work that takes a while: fits, charts, choices, stability maps; and laws.
-
-export interface Job {
-  job: number;
-  kind: "fit" | "chart" | "choice" | "stability";
-  title: string;
-  state: "waiting" | "running" | "done" | "failed" | "stopped";
-  share: number; // 0 to 1; -1 where it is not known
-  error: string;
-  file: string; // id of the result in the workspace; empty if there is none yet
-}
+// What fits, charts, choices and stability maps come to; and laws.
 
 /** A law that can be fitted; empty units: any axis. */
 export interface FittedLaw {

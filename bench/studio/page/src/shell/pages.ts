@@ -9,9 +9,10 @@ import { scope } from "../views/scope";
 import { sessions } from "../views/sessions";
 import { stability } from "../views/stability";
 import { studies } from "../views/studies";
+import { work } from "../views/work";
 
 /** The pages of the bar, in its order. */
-export const pages: readonly View[] = [scope, recordings, stability, studies, sessions, devices];
+export const pages: readonly View[] = [scope, recordings, stability, studies, sessions, devices, work];
 
 /** Reached by a link: a recording, and what addresses of earlier versions name. */
 export const hiddenPages: readonly View[] = [recording, editor, fits, chart];

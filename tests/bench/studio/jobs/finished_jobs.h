@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "results/jobs.h"
+#include "jobs/jobs.h"
 
 namespace kerf::test {
 

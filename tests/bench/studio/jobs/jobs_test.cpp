@@ -1,4 +1,4 @@
-#include "results/jobs.h"
+#include "jobs/jobs.h"
 
 #include <algorithm>
 #include <atomic>
@@ -11,7 +11,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "bench/studio/results/finished_jobs.h"
+#include "bench/studio/jobs/finished_jobs.h"
 
 namespace kerf::bench {
 namespace {

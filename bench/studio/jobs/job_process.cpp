@@ -1,0 +1,194 @@
+#include "jobs/job_process.h"
+
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <stdexcept>
+#include <system_error>
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <kerf/processes/helper.h>
+
+namespace kerf::bench {
+namespace {
+
+using processes::Descriptor;
+using SteadyClock = std::chrono::steady_clock;
+
+constexpr auto stopping_patience = std::chrono::seconds(5);  ///< between being asked to stop and being killed
+constexpr int process_look_ms = 100;
+
+struct PipeEnds {
+  Descriptor from;
+  Descriptor to;
+};
+
+PipeEnds make_pipe() {
+  std::array<int, 2> ends{};
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) throw std::system_error(errno, std::generic_category(), "a pipe");
+  PipeEnds made{.from = Descriptor(ends[0]), .to = Descriptor(ends[1])};
+  (void)fcntl(ends[0], F_SETFL, O_NONBLOCK);
+  return made;
+}
+
+/// What the new process needs, made ready before there is one: between fork() and exec() no memory is taken.
+struct ProgramCall {
+  explicit ProgramCall(const JobProcess& process) : program(process.program), folder(process.folder) {
+    texts.push_back(program);
+    texts.insert(texts.end(), process.words.begin(), process.words.end());
+    for (char** one = environ; *one != nullptr; ++one) settings.emplace_back(*one);
+    settings.push_back(fmt::format("{}={}", progress_variable, processes::first_descriptor));
+    for (std::string& one : texts) words.push_back(one.data());
+    for (std::string& one : settings) variables.push_back(one.data());
+    words.push_back(nullptr);
+    variables.push_back(nullptr);
+  }
+
+  std::string program;
+  std::string folder;
+  std::vector<std::string> texts;
+  std::vector<std::string> settings;
+  std::vector<char*> words;
+  std::vector<char*> variables;
+};
+
+/// Duplicates to a number that the program is to find it at; what has it already keeps it.
+bool put(int descriptor, int number) {
+  return descriptor == number ? fcntl(number, F_SETFD, 0) == 0 : dup2(descriptor, number) >= 0;
+}
+
+/// In the new process: takes the place of what was copied. Returns only if it cannot; errno says why.
+void become(const ProgramCall& command, int nothing, int output, int progress, pid_t studio) {
+  prctl(PR_SET_PDEATHSIG, SIGTERM);
+  if (getppid() != studio) _exit(127);  // it has ended meanwhile
+  setpgid(0, 0);
+  sigset_t none;
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, nullptr);
+  std::signal(SIGPIPE, SIG_DFL);
+  if (chdir(command.folder.c_str()) != 0) return;
+  // All lie above what they are put over: see start_process().
+  if (!put(nothing, STDIN_FILENO) || !put(output, STDOUT_FILENO) || !put(output, STDERR_FILENO)) return;
+  if (!put(progress, processes::first_descriptor)) return;
+  execve(command.program.c_str(), command.words.data(), command.variables.data());
+}
+
+pid_t start_process(const JobProcess& process, const PipeEnds& output, const PipeEnds& progress) {
+  const ProgramCall command(process);
+  constexpr int above = processes::first_descriptor + 1;
+  const Descriptor nothing(open("/dev/null", O_RDONLY | O_CLOEXEC));
+  const Descriptor from(fcntl(nothing.number(), F_DUPFD_CLOEXEC, above));
+  const Descriptor to(fcntl(output.to.number(), F_DUPFD_CLOEXEC, above));
+  const Descriptor steps(fcntl(progress.to.number(), F_DUPFD_CLOEXEC, above));
+  PipeEnds failed =
+      make_pipe();  // carries why it could not become the program; closed by the kernel if it could
+  const pid_t studio = getpid();
+  const pid_t child = fork();
+  if (child < 0) throw std::system_error(errno, std::generic_category(), process.program.string());
+  if (child == 0) {
+    const Descriptor high(fcntl(failed.to.number(), F_DUPFD_CLOEXEC, above));
+    become(command, from.number(), to.number(), steps.number(), studio);
+    const int error = errno;
+    (void)!write(high.number(), &error, sizeof error);
+    _exit(127);
+  }
+  failed.to.reset();
+  (void)fcntl(failed.from.number(), F_SETFL, 0);
+  int error = 0;
+  if (read(failed.from.number(), &error, sizeof error) == sizeof error) {
+    (void)processes::wait_for(child);
+    throw std::system_error(error, std::generic_category(), process.program.string());
+  }
+  return child;
+}
+
+/// What is there to be read now; false at the end.
+bool take_text(const Descriptor& from, std::string& text) {
+  std::array<char, 4096> buffer{};
+  for (;;) {
+    const ssize_t got = read(from.number(), buffer.data(), buffer.size());
+    if (got > 0) text.append(buffer.data(), static_cast<std::size_t>(got));
+    if (got == 0) return false;
+    if (got < 0 && errno != EINTR) return errno == EAGAIN;
+  }
+}
+
+/// Takes whole lines "DONE OF" off the front of the text.
+void take_steps(std::string& text, JobProgress& progress) {
+  for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n')) {
+    std::size_t done = 0;
+    std::size_t of = 0;
+    const char* const last = text.data() + end;
+    const auto first = std::from_chars(text.data(), last, done);
+    if (first.ec == std::errc() && first.ptr < last &&
+        std::from_chars(first.ptr + 1, last, of).ec == std::errc()) {
+      progress.done = done;
+      progress.steps = of;
+    }
+    text.erase(0, end + 1);
+  }
+}
+
+/// Asks to stop and, in the end, makes it.
+class Stopping {
+ public:
+  explicit Stopping(pid_t process) : process_(process) {}
+
+  void look(bool is_asked_for) {
+    if (!is_asked_for) return;
+    if (!is_asked_) {
+      kill(-process_, SIGINT);
+      is_asked_ = true;
+      until_ = SteadyClock::now() + stopping_patience;
+    } else if (SteadyClock::now() > until_) {
+      kill(-process_, SIGKILL);
+    }
+  }
+
+ private:
+  pid_t process_;
+  bool is_asked_ = false;
+  SteadyClock::time_point until_{};
+};
+
+}  // namespace
+
+int run_process(const JobProcess& process, JobProgress& progress) {
+  PipeEnds output = make_pipe();
+  PipeEnds steps = make_pipe();
+  const pid_t child = start_process(process, output, steps);
+  output.to.reset();
+  steps.to.reset();
+  Stopping stopping(child);
+  std::string steps_text;
+  int status = 0;
+  for (bool has_ended = false; !has_ended;) {
+    std::array<pollfd, 2> wanted{{{.fd = output.from.number(), .events = POLLIN, .revents = 0},
+                                  {.fd = steps.from.number(), .events = POLLIN, .revents = 0}}};
+    (void)poll(wanted.data(), wanted.size(), process_look_ms);
+    stopping.look(progress.stop);
+    has_ended = waitpid(child, &status, WNOHANG) == child;  // before the last look at what it has said
+    std::string said;
+    if (output.from.number() >= 0 && !take_text(output.from, said)) output.from.reset();
+    if (steps.from.number() >= 0 && !take_text(steps.from, steps_text)) steps.from.reset();
+    if (!said.empty()) progress.log(said);
+    take_steps(steps_text, progress);
+  }
+  if (WIFEXITED(status)) return WEXITSTATUS(status);
+  const int signal = WTERMSIG(status);
+  throw std::runtime_error(fmt::format(
+      "its process was ended from outside, by signal {} ({}): by somebody, or by the system where "
+      "memory ran out; what it had written so far is removed by the next run",
+      signal, strsignal(signal)));
+}
+
+}  // namespace kerf::bench
