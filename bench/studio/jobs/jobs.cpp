@@ -27,6 +27,7 @@ struct Jobs::Entry {
   std::string log{};        ///< of this studio; that of an earlier one is on disk
   bool is_earlier = false;  ///< of an earlier studio
   bool is_changed = false;  ///< the disk has not heard of it yet
+  bool is_forgotten = false;
   std::chrono::steady_clock::time_point begun{};
   std::chrono::system_clock::time_point begun_by_the_wall{};
 
@@ -107,7 +108,9 @@ void Jobs::forget(std::size_t job) {
   const std::scoped_lock disk(disk_);
   {
     const std::scoped_lock lock(mutex_);
-    if (!find(job)->record.has_ended()) throw RequestError(409, "the job is under way: stop it first");
+    const auto entry = find(job);
+    if (!entry->record.has_ended()) throw RequestError(409, "the job is under way: stop it first");
+    entry->is_forgotten = true;  // its thread may be about to keep how it ended
     std::erase_if(entries_, [job](const auto& entry) { return entry->record.number == job; });
   }
   store_.forget(job);
@@ -163,8 +166,9 @@ void Jobs::keep(Entry& entry) {
   JobRecord record;
   {
     const std::scoped_lock lock(mutex_);
-    record = entry.record;
     entry.is_changed = false;
+    if (entry.is_forgotten) return;
+    record = entry.record;
   }
   std::string failure = store_.keep(record);
   const std::scoped_lock lock(mutex_);
@@ -193,6 +197,7 @@ std::vector<std::size_t> Jobs::forget_oldest() {
       continue;
     }
     forgotten.push_back((*entry)->record.number);
+    (*entry)->is_forgotten = true;
     entry = entries_.erase(entry);
     --ended;
   }

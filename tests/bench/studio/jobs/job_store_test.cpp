@@ -1,6 +1,8 @@
 #include "jobs/job_store.h"
 
+#include <algorithm>
 #include <atomic>
+#include <csignal>
 #include <thread>
 
 #include <gmock/gmock.h>

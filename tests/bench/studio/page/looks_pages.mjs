@@ -78,6 +78,7 @@ export const tests = {
       device: `devices/${ids.device}`,
       flags: `recordings/${ids.punch}`,
       study: `studies/${ids.study}`,
+      work: "work/prepare?recording=cut.h5",
     };
     const complaints = [];
     for (const colorScheme of ["light", "dark"]) {

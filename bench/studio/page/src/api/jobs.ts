@@ -55,3 +55,11 @@ export interface OfferedNames {
   files: string[];
   folders: string[];
 }
+
+/** A file that was deleted and can be had back. */
+export interface Trashed {
+  key: string;
+  name: string;
+  time: string; // ISO 8601
+  bytes: number;
+}

@@ -1,19 +1,14 @@
+import type { Trashed } from "../api/jobs";
 import type { Workspace } from "../api/workspace";
 import { bytes, date } from "../recordings/recording_list";
 import { button, element, labelled } from "../ui/dom";
 import type { Context } from "../ui/view";
 
-interface Trashed {
-  key: string;
-  name: string;
-  time: string;
-  bytes: number;
-}
-
 interface ChangeableFile {
   id: string;
   kind: "recording" | "law";
   name: string;
+  takesNotes: boolean;
 }
 
 /** Recordings and laws as files: renamed, annotated, deleted, and had back. */
@@ -56,8 +51,8 @@ export class FilePage {
       const files: ChangeableFile[] = [
         ...workspace.recordings
           .filter((it) => !it.partial)
-          .map(({ id, name }) => ({ id, name, kind: "recording" as const })),
-        ...workspace.laws.map(({ id, name }) => ({ id, name, kind: "law" as const })),
+          .map(({ id, name }) => ({ id, name, kind: "recording" as const, takesNotes: true })),
+        ...workspace.laws.map(({ id, name }) => ({ id, name, kind: "law" as const, takesNotes: false })),
       ];
       this.rows.replaceChildren(...files.map((it) => this.row(it)));
       this.trash.replaceChildren(...trash.map((it) => this.trashed(it)));
@@ -74,7 +69,7 @@ export class FilePage {
         "div",
         { class: "row" },
         button("Rename", () => this.edit(file, more, actions, "rename"), { "aria-label": `Rename ${file.name}` }),
-        file.kind === "recording"
+        file.takesNotes
           ? button("Note", () => this.edit(file, more, actions, "annotate"), { "aria-label": `Note on ${file.name}` })
           : null,
         button("Delete", () => this.remove(file), { "aria-label": `Delete ${file.name}` }),
@@ -128,6 +123,7 @@ export class FilePage {
   private remove(file: ChangeableFile): void {
     this.context.api.post<{ key: string }>("/api/files/delete", { id: file.id, kind: file.kind }).then(({ key }) => {
       this.say(`${file.name} is in the trash.`, () => this.restore(key, file.name));
+      this.context.lookAtFolder();
       return this.load();
     }, this.context.complain);
   }
@@ -150,6 +146,7 @@ export class FilePage {
     this.context.say("");
     this.context.api.post(path, body).then(() => {
       this.say(said);
+      this.context.lookAtFolder();
       return this.load();
     }, this.context.complain);
   }

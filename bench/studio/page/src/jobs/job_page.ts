@@ -77,6 +77,7 @@ export class JobPage {
       put(this.log, text || "It has said nothing.");
       if (!first || isUnderWay(job)) return;
       const { files } = await api.get<{ files: MadeFile[] }>("/api/jobs/result", { job: job.job }, signal);
+      if (files.length > 0) this.context.lookAtFolder();
       this.result.replaceChildren(jobResult(api, job.job, files, signal));
     } catch (error) {
       if (!signal.aborted) this.context.complain(error);

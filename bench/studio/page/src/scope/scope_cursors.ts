@@ -2,7 +2,7 @@ import { button, element } from "../ui/dom";
 import { plain, withUnit } from "../ui/numbers";
 import { columnAt, type TimeLine } from "../ui/time/time_line";
 import type { TimeStack } from "../ui/time/time_stack";
-import { middle } from "./xy_view";
+import { middle } from "./views/xy_view";
 
 const names = ["A", "B"] as const;
 type Name = (typeof names)[number];

@@ -6,9 +6,9 @@ import { DeadlineStrip } from "./deadline_strip";
 import { MarkPanel } from "./mark_panel";
 import { ScopeCursors } from "./scope_cursors";
 import type { ScopePicture } from "./scope_picture";
-import { SpectrumView } from "./spectrum_view";
+import { SpectrumView } from "./views/spectrum_view";
 import { TriggerPanel } from "./trigger_panel";
-import { XyView } from "./xy_view";
+import { XyView } from "./views/xy_view";
 
 const views = [
   { name: "time", text: "Time" },

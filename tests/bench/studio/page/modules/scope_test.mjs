@@ -5,7 +5,7 @@ import { join, resolve } from "node:path";
 
 const page = resolve(process.argv[2]);
 const { build } = createRequire(join(page, "package.json"))("esbuild");
-const modules = ["live_columns", "trigger", "spectrum", "deadline_strip"];
+const modules = ["live_columns", "trigger", "views/spectrum", "deadline_strip"];
 const bundle = await build({
   stdin: {
     contents: modules.map((it) => `export * from "./src/scope/${it}";`).join("\n"),

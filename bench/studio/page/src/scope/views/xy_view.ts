@@ -1,6 +1,6 @@
-import { element, labelled, select } from "../ui/dom";
-import { palette } from "../ui/palette";
-import { columnsWithin, type TimeLine } from "../ui/time/time_line";
+import { element, labelled, select } from "../../ui/dom";
+import { palette } from "../../ui/palette";
+import { columnsWithin, type TimeLine } from "../../ui/time/time_line";
 import { clipTo, drawAxes } from "./canvas_axes";
 
 /** One trace over another, of the stretch that the scope shows; the newest end has a point. */

@@ -1,10 +1,10 @@
-import type { Api } from "../api/api";
-import type { Trace } from "../api/recordings";
-import { inWords } from "../recordings/trace_groups";
-import { element, labelled, select } from "../ui/dom";
-import { Latest } from "../ui/latest";
-import { plain, withUnit } from "../ui/numbers";
-import { palette } from "../ui/palette";
+import type { Api } from "../../api/api";
+import type { Trace } from "../../api/recordings";
+import { inWords } from "../../recordings/trace_groups";
+import { element, labelled, select } from "../../ui/dom";
+import { Latest } from "../../ui/latest";
+import { plain, withUnit } from "../../ui/numbers";
+import { palette } from "../../ui/palette";
 import { clipTo, drawAxes } from "./canvas_axes";
 import { peakOf, powerOfTwo, spectrumOf, type Spectrum } from "./spectrum";
 

@@ -1,5 +1,5 @@
-import { linearTicks, logarithmicTicks, plain, unitFor, withUnit } from "../ui/numbers";
-import { palette } from "../ui/palette";
+import { linearTicks, logarithmicTicks, plain, unitFor, withUnit } from "../../ui/numbers";
+import { palette } from "../../ui/palette";
 
 /** A side of a plot: from where to where, in which unit, and what it is. */
 export interface Side {
