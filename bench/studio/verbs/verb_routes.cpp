@@ -50,17 +50,16 @@ JobOrder verb_job(Workspace& workspace, const VerbForm& form, const VerbProgram&
           .title = as_typed(typed),
           .work =
               [&workspace, process = std::move(process), outputs = order.outputs](JobProgress& progress) {
-                std::string said;
-                const auto log = progress.log;
-                progress.log = [&](std::string_view text) {
-                  said += text;
-                  if (said.size() > JobStore::longest_log) said.erase(0, said.size() - JobStore::longest_log);
+                const auto said = std::make_shared<std::string>();
+                progress.log = [said, log = progress.log](std::string_view text) {
+                  said->append(text);
+                  if (said->size() > JobStore::longest_log)
+                    said->erase(0, said->size() - JobStore::longest_log);
                   log(text);
                 };
                 const int status = run_process(process, progress);
-                progress.log = log;
                 if (progress.stop) throw std::runtime_error("stopped");
-                if (status > check_failed_status) throw std::runtime_error(last_words(said));
+                if (status > check_failed_status) throw std::runtime_error(last_words(*said));
                 return JobEnd(id_of_made(workspace, outputs),
                               status == check_failed_status ? "did not pass" : "");
               },

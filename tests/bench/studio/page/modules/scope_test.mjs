@@ -39,8 +39,8 @@ const frame = (from, values) => ({
   events: [],
 });
 /** When it triggers [ticks] as the values come in frames of 10. */
-function triggers(values, settings, window = 20) {
-  const columns = new LiveColumns(1, 1, 60);
+function triggers(values, settings, window = 20, capacity = 60) {
+  const columns = new LiveColumns(1, 1, capacity);
   const finder = new TriggerFinder();
   const found = [];
   for (let from = 0; from < values.length; from += 10) {
@@ -60,9 +60,11 @@ expectEqual(triggers(ramp), [25, 75, 125, 175], "every rise through the level");
 expectEqual(triggers(ramp, { edge: "falling" }), [50, 100, 150, 200], "every fall");
 expectEqual(triggers(ramp, { level: 2 }), [], "a level that is never met");
 expectEqual(triggers(ramp, {}, 100), [25, 125], "none within a window that is shown");
+expectEqual([triggers(ramp.slice(0, 40)), triggers(ramp.slice(0, 50))], [[], [25]], "not before its window is whole");
 // About the level noise is no crossing: the value has to come from beyond.
-const noisy = ramp.map((it, k) => it + (k % 2 ? 0.004 : -0.004));
-expectEqual(triggers(noisy).length, 4, "once a rise, though it flickers at the level");
+const noisy = Array.from({ length: 2000 }, (_, k) => (k % 1000) / 1000 + (k % 2 ? -0.009 : 0.009));
+const again = triggers(noisy, {}, 4, 1200).filter((it) => it > 1000);
+expectEqual(again, [1492], "once a rise, though it flickers at the level");
 const gap = ramp.map((it, k) => (k > 20 && k < 40 ? null : it));
 expectEqual(triggers(gap)[0], 40, "a crossing within a gap is that after it");
 
