@@ -111,7 +111,7 @@ void Jobs::forget(std::size_t job) {
     const auto entry = find(job);
     if (!entry->record.has_ended()) throw RequestError(409, "the job is under way: stop it first");
     entry->is_forgotten = true;  // its thread may be about to keep how it ended
-    std::erase_if(entries_, [job](const auto& entry) { return entry->record.number == job; });
+    std::erase(entries_, entry);
   }
   store_.forget(job);
 }

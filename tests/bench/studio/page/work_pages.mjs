@@ -15,6 +15,8 @@ async function openWork(browser, studio, place, options = {}) {
   return page;
 }
 
+const form = (page) => page.locator(".verb_page form");
+
 /** Presses Run, and waits for the job's end. */
 async function run(page, studio) {
   const before = (await jobs(studio)).length;
@@ -84,13 +86,9 @@ export const tests = {
     await studio.serve();
     const page = await openWork(browser, studio, "prepare?recording=cut.h5");
     await page.getByRole("heading", { name: "Prepare a recording" }).waitFor();
-    expectEqual(
-      await page.getByLabel("recording", { exact: false }).first().inputValue(),
-      "cut.h5",
-      "what the address names",
-    );
-    expectEqual(await page.getByLabel("output").inputValue(), "cut-prepare", "a name that is free");
-    await page.getByLabel("output").fill("clean");
+    expectEqual(await form(page).getByLabel("recording").inputValue(), "cut.h5", "what the address names");
+    expectEqual(await form(page).getByLabel("output").inputValue(), "cut-prepare", "a name that is free");
+    await form(page).getByLabel("output").fill("clean");
     await page.getByText("more options").click();
     await page.getByRole("textbox", { name: "filter", exact: true }).fill("butterworth2:20");
     await page.screenshot({ path: join(screenshots, "work_form.png") });
@@ -111,11 +109,16 @@ export const tests = {
     await writeFile(join(studio.folder, "taken.h5"), "");
     await studio.serve();
     const page = await openWork(browser, studio, "prepare?recording=cut.h5");
-    await page.getByLabel("output").fill("taken");
+    await form(page).getByLabel("output").fill("taken");
     await page.getByRole("button", { name: "Run", exact: true }).click();
     await page.getByRole("alert").filter({ hasText: "output: taken.h5 is there already" }).waitFor();
-    expect(await page.getByLabel("output").evaluate((it) => it === document.activeElement), "the field has the focus");
-    await page.getByLabel("output").fill("clean");
+    expect(
+      await form(page)
+        .getByLabel("output")
+        .evaluate((it) => it === document.activeElement),
+      "the field has the focus",
+    );
+    await form(page).getByLabel("output").fill("clean");
     await page.getByText("more options").click();
     await page.getByRole("textbox", { name: "sigmas", exact: true }).fill("-3");
     await page.getByRole("button", { name: "Run", exact: true }).click();
@@ -141,16 +144,16 @@ export const tests = {
       studio.kerfOrThrow("check", file, "--virtual", "--seconds", "2", "--floor", "0", "--record", `${name}.h5`);
     await studio.serve();
     const page = await openWork(browser, studio, "report?recording=cut.h5");
-    await page.getByLabel("output").fill("cut-report");
+    await form(page).getByLabel("output").fill("cut-report");
     expectEqual((await run(page, studio)).state, "done", "the report");
     const link = page.locator(".made").getByRole("link", { name: "cut-report.html" });
     const [report] = await Promise.all([page.context().waitForEvent("page"), link.click()]);
     await report.waitForLoadState();
     expect((await report.textContent("body")).includes("cut.h5"), "the report is about the recording");
     await page.goto(studio.page("work/compare"));
-    await page.getByLabel("expected").selectOption("one.h5");
-    await page.getByLabel("got").selectOption("two.h5");
-    await page.getByLabel("output").fill("differences");
+    await form(page).getByLabel("expected").selectOption("one.h5");
+    await form(page).getByLabel("got").selectOption("two.h5");
+    await form(page).getByLabel("output").fill("differences");
     const compared = await run(page, studio);
     expectEqual([compared.state, compared.outcome], ["done", "did not pass"], "two laws");
     await page.locator(".job_result img").first().waitFor();
@@ -187,7 +190,7 @@ export const tests = {
     await studio.serve();
     const page = await openWork(browser, studio, "info?recording=cut.h5");
     await page.getByRole("heading", { name: "What is in a recording" }).waitFor();
-    await page.locator("select").first().selectOption("cut.h5");
+    await form(page).getByLabel("recording").selectOption("cut.h5");
     const first = await run(page, studio);
     expectEqual(first.state, "done", first.error);
     const slow = await takeTime(studio);
@@ -244,11 +247,14 @@ export const tests = {
   async "a session is made and rehearsed, and nothing of it is unblinded"({ browser, studio }) {
     studio.kerfOrThrow("session", "key", "keeper.key");
     const protocol = new URL("../../../../examples/sessions/abx.protocol.toml", import.meta.url);
-    await writeFile(join(studio.folder, "abx.protocol.toml"), await readFile(protocol));
+    const text = await readFile(protocol, "utf8");
+    await writeFile(join(studio.folder, "abx.protocol.toml"), text.replaceAll("../", ""));
+    for (const [, name] of text.matchAll(/"\.\.\/([^"]+)"/g))
+      await writeFile(join(studio.folder, name), await readFile(new URL(`../${name}`, protocol)));
     await studio.serve("--key-file", join(studio.folder, "keeper.key"));
     const page = await openWork(browser, studio, "session-new");
-    await page.getByLabel("protocol").selectOption("abx.protocol.toml");
-    await page.getByLabel("output").fill("S01");
+    await form(page).getByLabel("protocol").selectOption("abx.protocol.toml");
+    await form(page).getByLabel("output").fill("S01");
     await page.getByText("more options").click();
     await page.getByRole("textbox", { name: "subject", exact: true }).fill("S01");
     await page.getByLabel("no check").check();

@@ -22,12 +22,17 @@ function verbList(forms: readonly VerbForm[], current: string): HTMLElement {
   return element(
     "nav",
     { class: "verb_list", "aria-label": "What can be done" },
-    element("div", {}, element("h2", {}, "files"), element("ul", {}, line(files, "Rename, note, delete", "Files"))),
+    element(
+      "div",
+      {},
+      element("p", { class: "group" }, "files"),
+      element("ul", {}, line(files, "Rename, note, delete", "Files")),
+    ),
     ...groups.map((group) =>
       element(
         "div",
         {},
-        element("h2", {}, group),
+        element("p", { class: "group" }, group),
         element("ul", {}, ...forms.filter((it) => it.group === group).map(link)),
       ),
     ),
