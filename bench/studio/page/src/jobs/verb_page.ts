@@ -22,7 +22,7 @@ export class VerbPage {
     private readonly ordered: (job: number) => void,
   ) {
     for (const value of form.values) this.fields.set(value.name, valueField(value, names));
-    const first = form.values.filter((it) => it.required || it.kind === "output" || isSubject(it));
+    const first = form.values.filter((it) => it.required || it.name === "--output" || isSubject(it));
     const rest = form.values.filter((it) => !first.includes(it));
     const [example = "", ...more] = form.more.replace(/^Example:\n/, "").split("\n\n");
     this.root = element(
