@@ -79,6 +79,8 @@ void become(const ProgramCall& command, int nothing, int output, int progress, p
   // All lie above what they are put over: see start_process().
   if (!put(nothing, STDIN_FILENO) || !put(output, STDOUT_FILENO) || !put(output, STDERR_FILENO)) return;
   if (!put(progress, processes::first_descriptor)) return;
+  // What the studio itself was started with is none of the job's.
+  if (close_range(processes::first_descriptor + 1, ~0U, CLOSE_RANGE_CLOEXEC) != 0) return;
   execve(command.program.c_str(), command.words.data(), command.variables.data());
 }
 

@@ -1,5 +1,6 @@
 #include "verbs/verb_routes.h"
 
+#include <algorithm>
 #include <memory>
 #include <thread>
 
@@ -45,7 +46,8 @@ class VerbRoutes : public testing::Test {
            .values = {{.name = "--output", .label = "", .kind = ValueKind::output, .words = {""}}}});
     program.forms.front().needs_key = true;
     program.check = [](const std::vector<std::string>& words) {
-      if (words.back() == "--output=odd") throw std::invalid_argument("--output: odd is refused by the verb");
+      if (std::ranges::find(words, "--output=odd") != words.end())
+        throw std::invalid_argument("--output: odd is refused by the verb");
     };
     add_verb_routes(routes_, workspace_, jobs_, std::move(program));
     add_job_routes(routes_, jobs_);
