@@ -50,10 +50,10 @@ TEST_F(JobProcesses, SayHowFarTheyAre) {
 
 TEST_F(JobProcesses, OfTheProgramTellTheirStepsToTheLast) {
   schema::write_recording(folder_ / "punch.h5", test::punch({.seconds = 1.0}));
-  const JobProcess fit{.program = KERF_PROGRAM,
-                       .words = {"fit", "punch.h5", "--models", "kelvin", "--no-folds", "-o", "fits"},
-                       .folder = folder_.path()};
-  EXPECT_EQ(run_process(fit, progress_), 0) << said_;
+  const JobProcess chart{.program = KERF_PROGRAM,
+                         .words = {"chart", "punch.h5", "--laws", "kelvin", "-o", "chart"},
+                         .folder = folder_.path()};
+  EXPECT_EQ(run_process(chart, progress_), 0) << said_;
   EXPECT_GT(progress_.steps, 0U);
   EXPECT_EQ(progress_.done, progress_.steps);
 }
