@@ -21,7 +21,9 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-constexpr double least_share_of_jnd = 1e-4;
+// What is further from the JND stands at an edge: it would press all others into a few pixels.
+constexpr double least_share_of_jnd = 1e-2;
+constexpr double most_jnds = 1e2;
 constexpr double unknown_share = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double far_away = 10.0;     // times: what is no nearer would press all points into a corner
@@ -58,7 +60,7 @@ struct Spots {
         cold_tail(text_or_empty(chart, "cold_tail")),
         limit(chart.value("jnd_fraction_limit", 1.0)) {
     const std::string cold_key = cold_tail == "p99" ? "cold_p99_ns" : "cold_p999_ns";
-    const double most = 1e3 * jnd;
+    const double most = most_jnds * jnd;
     for (const json& point : chart.at("points")) {
       const double error = number_from(point.at(unit == "N" ? "error_n" : "error_jnd"));
       const double p50_ns = number_from(point.at("p50_ns"));
@@ -93,6 +95,15 @@ std::string hollow_in_words(const Spots& spots) {
   const bool any =
       std::ranges::any_of(spots.all, [&](const Spot& spot) { return spot.outside > spots.limit; });
   return any ? fmt::format("; hollow: over {:.2g} % of ticks outside the JND", 100.0 * spots.limit) : "";
+}
+
+/// What stands at an edge, where there is any.
+std::string edges_in_words(const Spots& spots) {
+  const auto at = [&](double error) { return std::ranges::count(spots.all, error, &Spot::error) > 0; };
+  const bool less = at(least_share_of_jnd * spots.jnd);
+  const bool more = at(most_jnds * spots.jnd);
+  if (less && more) return "; at the edges: less, more";
+  return less ? "; at the edge: less" : (more ? "; at the edge: more" : "");
 }
 
 /// A colour a law; hollow marks where too many ticks are outside the JND.
@@ -192,7 +203,8 @@ void add_marks(const Spots& spots, Stable stable, Curve marks, Chart& picture) {
 Chart chart_picture(const json& chart) {
   const Spots spots(chart);
   Chart picture{.title = fmt::format("Cost of a tick over error: {}", chart.at("source").get<std::string>()),
-                .x_label = fmt::format("error, root mean square [{}]{}", spots.unit, hollow_in_words(spots)),
+                .x_label = fmt::format("error, root mean square [{}]{}{}", spots.unit, edges_in_words(spots),
+                                       hollow_in_words(spots)),
                 .y_label = "cost of a tick [us]",
                 .log_x = true,
                 .log_y = true,

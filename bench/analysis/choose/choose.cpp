@@ -83,6 +83,7 @@ class LawSelection {
  private:
   /// What a tick of each costs in the loop.
   void time(std::span<Candidate> group) const {
+    if (!options_.time_ticks) return;
     std::vector<TimedLaw> timed;
     for (const Candidate& one : group) {
       if (one.file) timed.push_back({LawRendering(one.file->law, {}, {0}), &path_});

@@ -23,6 +23,9 @@ struct ChooseOptions {
   std::atomic<std::size_t>* done = nullptr;  ///< counts the candidates that were fitted
   std::atomic<std::size_t>* of = nullptr;    ///< becomes the number of candidates
   bool richer_too = true;  ///< also fit what is richer than the law that serves, for the table
+  /// Measure what a tick of each law costs, which no two runs do alike. Else it is 0 of all, and of laws with
+  /// as many parameters the one that knows fewer effects comes first.
+  bool time_ticks = true;
   CandidateSearchOptions search;
 };
 

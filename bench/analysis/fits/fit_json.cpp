@@ -161,6 +161,7 @@ json recording_as_json(const FittedRecording& recording) {
       {"name", recording.name},
       {"uuid", recording.uuid},
       {"content_sha256", recording.content_sha256.empty() ? json(nullptr) : json(recording.content_sha256)},
+      {"cycles_sha256", recording.cycles_sha256.empty() ? json(nullptr) : json(recording.cycles_sha256)},
       {"axis", recording.axis},
       {"contact", {{"position", recording.contact.position}, {"direction", recording.contact.direction}}},
       {"samples", recording.samples},

@@ -18,6 +18,7 @@
 #include "fits/rendered_series.h"
 #include "fits/row_doubts.h"
 #include "recordings/provenance.h"
+#include "segment/cycle_edit.h"
 #include "signal/quantiles.h"
 
 namespace kerf::bench {
@@ -174,6 +175,12 @@ CountedRows rows_that_count(AxisSeries& series, const FitSource& source, const s
   return counted;
 }
 
+/// Of which cycles a fit is.
+std::string cycles_along(const FitSource& source) {
+  const auto& cycles = source.recording->cycles;
+  return cycles && cycles->axis == source.axis ? cycles_sha256_of(*source.recording) : "";
+}
+
 Sources sources_of(std::span<const FitSource> all, RecordingFit& fit) {
   Sources sources{.all = all, .series = {}, .rendered = {}, .together = {}};
   sources.series.reserve(all.size());
@@ -191,6 +198,7 @@ Sources sources_of(std::span<const FitSource> all, RecordingFit& fit) {
         }));
     fit.recordings.push_back({.name = source.name,
                               .uuid = source.recording->header.uuid,
+                              .cycles_sha256 = cycles_along(source),
                               .axis = source.recording->axes[source.axis].name,
                               .contact = source.contact,
                               .samples = rows,

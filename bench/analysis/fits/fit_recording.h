@@ -58,6 +58,7 @@ struct FittedRecording {
   std::string name;
   std::string uuid;
   std::string content_sha256{};  ///< of what was sampled; empty until the fits are written
+  std::string cycles_sha256{};   ///< of the cycles along its axis, cycles_sha256_of(); empty without any
   std::string axis;
   models::Contact contact;
   std::size_t samples = 0;

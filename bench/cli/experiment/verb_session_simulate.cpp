@@ -16,7 +16,6 @@
 #include "observers/simulated_design.h"
 #include "observers/simulation_report.h"
 #include "program/progress.h"
-#include "registered/experiment.h"
 
 namespace kerf::bench {
 namespace {
@@ -50,27 +49,6 @@ SimulationOptions options_of(const SessionSimulateVerbArguments& arguments, cons
   options.jobs = arguments.jobs > 0 ? arguments.jobs : std::max(1U, std::thread::hardware_concurrency());
   options.seed = context.seed;
   return options;
-}
-
-/// Of an experiment its number, its test and its stopping rule come with it.
-Protocol protocol_to_simulate(const SessionSimulateVerbArguments& arguments, SimulationOptions& options) {
-  if (!is_experiment(arguments.protocol)) return read_protocol(arguments.protocol);
-  const fs::path file = experiment_file(arguments.protocol);
-  const Experiment experiment = read_experiment(file);
-  if (options.subjects != 1 || options.analysis.margin || options.analysis.d_prime_bound)
-    throw std::invalid_argument(
-        "the experiment has the number of its participants and its margins: leave out --subjects, --margin "
-        "and "
-        "--equal-below");
-  options.subjects = experiment.participants.target;
-  options.visits = experiment.participants.visits;
-  options.analysis.level = experiment.analysis.alpha;
-  options.analysis.margin = experiment.analysis.margin;
-  options.analysis.d_prime_bound = experiment.analysis.d_prime;
-  options.analysis.jnd_margins = experiment.analysis.jnd_margins;
-  options.catch_right = experiment.analysis.exclude.catch_right;
-  options.experiment = experiment;
-  return protocol_of(experiment, file);
 }
 
 void warn_of_what_has_no_bearing(const Protocol& protocol, const SimulationOptions& options) {
@@ -112,7 +90,7 @@ void write_files(const SessionSimulateVerbArguments& arguments, const Simulation
 
 void run(const SessionSimulateVerbArguments& arguments, Context& context) {
   SimulationOptions options = options_of(arguments, context);
-  Protocol protocol = protocol_to_simulate(arguments, options);
+  Protocol protocol = protocol_to_simulate(arguments.protocol, options);
   if (arguments.trials > 0) protocol = with_trials(std::move(protocol), arguments.trials);
   const std::string& device = options.sensation.felt.device_uri;
   for (const std::string& remark : find_gains(protocol, device)) warn(remark);

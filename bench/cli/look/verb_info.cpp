@@ -10,9 +10,12 @@
 #include <kerf/schema/recording_file.h>
 #include <kerf/schema/regression.h>
 #include <kerf/schema/session.h>
+#include <kerf/schema/sweep_tables_file.h>
 #include <kerf/schema/validate.h>
 
 #include "files/for_terminal.h"
+#include "merge/merged_facts.h"
+#include "plan/file_of_sweep.h"
 #include "program/standard_streams.h"
 #include "program/verbs.h"
 #include "recordings/summary.h"
@@ -98,6 +101,7 @@ void run_info(const InfoVerbArguments& arguments, Context& context) {
   if (arguments.follow) follow(arguments.recording);
   const std::filesystem::path file = arguments.follow ? schema::find_recording(arguments.recording).file
                                                       : std::filesystem::path(arguments.recording);
+  refuse_file_of_sweep(file);
   const std::string schema = schema::schema_of(file);
   if (schema == schema::session_schema_name) {
     context.result = session_facts(file);
@@ -105,6 +109,9 @@ void run_info(const InfoVerbArguments& arguments, Context& context) {
   } else if (schema == schema::regression_schema_name) {
     context.result = stored_facts(schema::read_regression(file));
     context.say(stored_facts_table(context.result));
+  } else if (schema == schema::sweep_tables_name) {
+    context.result = merged_facts(schema::SweepTablesFile(file).facts());
+    context.say(merged_facts_table(context.result));
   } else {
     context.result = recording_summary(schema::RecordingFile(file));
     context.say(summary_table(context.result));
@@ -122,7 +129,7 @@ void add_info(CLI::App& app, Context& context) {
       "info --schema",
       [arguments, &context] { run_info(*arguments, context); });
   verb.add_option("recording", arguments->recording,
-                  "The recording, or the NAME.partial of one not closed; a session, stored forces");
+                  "The recording, or the NAME.partial of one not closed; a session, stored forces, sweep.h5");
   verb.takes_texts(context, arguments->recording);
   verb.add_flag("--follow", arguments->follow,
                 "Show a recording while it is made, from another terminal, until it is closed");

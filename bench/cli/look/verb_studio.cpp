@@ -1,4 +1,5 @@
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -7,10 +8,12 @@
 
 #include <fmt/core.h>
 
+#include "look/verb_forms.h"
 #include "pages/browser_link.h"
 #include "program/verbs.h"
 #include "run/run.h"
 #include "server/studio.h"
+#include "study/swept_verbs.h"
 
 namespace kerf::bench {
 namespace {
@@ -33,10 +36,15 @@ void open_link(const std::string& url, std::optional<BrowserLink>& link) {
   }
 }
 
-void run_studio(const StudioVerbArguments& arguments, Context& context) {
+void run_studio(const CLI::App& app, const StudioVerbArguments& arguments, Context& context) {
+  std::error_code unknown;  // without /proc no verb is run from the page
   StudioOptions options{.folder = arguments.folder,
                         .port = static_cast<std::uint16_t>(arguments.port),
-                        .key_file = arguments.key_file};
+                        .key_file = arguments.key_file,
+                        .program = std::filesystem::read_symlink("/proc/self/exe", unknown),
+                        .verbs = verb_forms(app),
+                        .check_words = [](const auto& words) { (void)read_command_line(words); },
+                        .swept = swept_verbs()};
   if (!arguments.device.empty()) options.device_uri = arguments.device;
   if (!arguments.listen.empty()) options.address = arguments.listen;
   const StopOnSignal signals;
@@ -65,7 +73,7 @@ void add_studio(CLI::App& app, Context& context) {
       "Serves the recordings, laws and sessions of a folder to a browser of this machine: live scope,\n"
       "recordings, the segment editor, fits, charts, studies and sessions. Whoever has the printed\n"
       "address can use it. docs/studio.md says more.",
-      [arguments, &context] { run_studio(*arguments, context); });
+      [arguments, &app, &context] { run_studio(app, *arguments, context); });
   verb.takes_laws(context);
   verb.add_option("DIR", arguments->folder, "The folder to work in").with_default();
   verb.add_uri("--device", arguments->device,

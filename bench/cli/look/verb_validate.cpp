@@ -5,12 +5,14 @@
 #include <kerf/schema/session.h>
 #include <kerf/schema/validate.h>
 
+#include "plan/file_of_sweep.h"
 #include "program/verbs.h"
 
 namespace kerf::bench {
 namespace {
 
 void run_validate(const std::string& file, Context& context) {
+  refuse_file_of_sweep(file);
   const auto violations = schema::validate(file);
   const std::string schema = schema::schema_of(file);
   context.result["schema"] =
@@ -37,7 +39,8 @@ void add_validate(CLI::App& app, Context& context) {
   auto file = std::make_shared<std::string>();
   Verb verb = add_verb(app, context, "validate", "List every way in which a file departs from the schema",
                        "kerf validate cut.h5", [file, &context] { run_validate(*file, context); });
-  verb.add_option("recording", *file, "The recording, session or stored forces").required();
+  verb.add_option("recording", *file, "The recording, session, stored forces or tables of a sweep")
+      .required();
   verb.takes_texts(context, *file);
 }
 

@@ -19,6 +19,7 @@
 #include "recordings/axes.h"
 #include "recordings/axis_values.h"
 #include "report/charts.h"
+#include "segment/cycle_edit.h"
 #include "segment/segment.h"
 
 namespace kerf::bench {
@@ -104,8 +105,12 @@ std::vector<FlaggedCycle> flag_and_store(schema::Recording& recording, const sch
   return cycles;
 }
 
-/// Flags that a person set or took away are of cycles that are no more.
+/// Flags that a person set or took away, and boundaries that a person moved, are of cycles that are no more.
 void warn_of_what_was_said(const schema::Recording& recording, const std::string& name) {
+  if (const std::vector<ToldEdit> edits = edits_of(recording.header); recording.cycles && !edits.empty())
+    warn(fmt::format(
+        "{}: its cycles were edited by {} at {}, which is gone with them; the history keeps what it was",
+        name, edits.back().author, edits.back().time));
   if (!recording.cycle_flags) return;
   const auto said = std::ranges::count_if(recording.cycle_flags->flags, [](const schema::CycleFlag& flag) {
     return flag.fault == "by_hand" || flag.fault == "accepted";

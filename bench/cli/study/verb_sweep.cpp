@@ -6,7 +6,7 @@ namespace kerf::bench {
 
 void add_sweep(CLI::App& app, Context& context) {
   CLI::App& sweep = add_verb_of_verbs(
-      app, "sweep", "Compute a grid of fits, walls or devices, here or as shards on a cluster",
+      app, "sweep", "Compute a grid of fits, choices or walls, here or as shards on a cluster",
       "Example:\n"
       "  kerf sweep plan noise.toml\n"
       "  kerf sweep run noise.plan.json -j 2\n"

@@ -9,6 +9,7 @@
 #include "merge/merge_sweep.h"
 #include "merge/sweep_status.h"
 #include "program/progress.h"
+#include "study/swept_verbs.h"
 #include "study/verb_sweep.h"
 
 namespace kerf::bench {
@@ -38,7 +39,7 @@ void say_status(const SweepStatus& status, Context& context) {
 }
 
 void run_sweep_status(const SweepMergeArguments& arguments, Context& context) {
-  const PlanFile plan = read_plan(arguments.plan);
+  const PlanFile plan = read_plan(arguments.plan, swept_verbs());
   const GatheredCells cells(plan, arguments.shards_of(plan));
   const SweepStatus status = status_of(plan, cells);
   context.result = as_json(status);
@@ -80,7 +81,7 @@ void say_merged(const GatheredCells& cells, const SweepStatus& status, const fs:
 }
 
 void run_sweep_merge(const SweepMergeArguments& arguments, Context& context) {
-  const PlanFile plan = read_plan(arguments.plan);
+  const PlanFile plan = read_plan(arguments.plan, swept_verbs());
   fs::path folder = arguments.output;
   if (folder.empty()) folder = plan.shards_folder().replace_extension(".merged");
   require_output(folder / "sweep.h5", arguments.force);

@@ -13,6 +13,7 @@
 #include "plan/sweep_file.h"
 #include "run/run.h"
 #include "run/timed_sample.h"
+#include "study/swept_verbs.h"
 #include "study/verb_sweep.h"
 #include "verbs/sweep_verb.h"
 
@@ -72,7 +73,7 @@ void list_cells(const SweepPlan& plan) {
 }
 
 void run_sweep_plan(const SweepPlanArguments& arguments, Context& context) {
-  SweepPlan plan = read_sweep(arguments.sweep);
+  SweepPlan plan = read_sweep(arguments.sweep, swept_verbs());
   if (arguments.shards > 0) plan.shards = arguments.shards;
   const bool shards_open = plan.shards == 0;
   plan.shards = std::max<std::uint64_t>(plan.shards, 1);
@@ -83,7 +84,7 @@ void run_sweep_plan(const SweepPlanArguments& arguments, Context& context) {
   const fs::path file = plan_file_of(arguments);
   require_output(file, arguments.force);
   write_plan(file, plan, std::nullopt, arguments.force);
-  PlanFile written = read_plan(file);
+  PlanFile written = read_plan(file, swept_verbs());
   std::optional<ExpectedCost> cost;
   if (!arguments.no_sample) {
     const StopOnSignal signals;

@@ -19,6 +19,7 @@
 #include "run/run.h"
 #include "run/run_shard.h"
 #include "run/serve_cells.h"
+#include "study/swept_verbs.h"
 #include "study/verb_sweep.h"
 
 namespace kerf::bench {
@@ -105,7 +106,7 @@ void say_shard(const ShardOutcome& outcome, const ShardName& name, Context& cont
 
 void run_sweep_shard(const SweepRunArguments& arguments, Context& context) {
   const StopOnSignal signals(StopOnSignal::Also::user_signal);
-  const PlanFile plan = read_plan(arguments.plan);
+  const PlanFile plan = read_plan(arguments.plan, swept_verbs());
   ShardRunOptions options;
   options.name = requested_shard(arguments, plan);
   options.folder = arguments.output.empty() ? plan.shards_folder() : std::filesystem::path(arguments.output);
@@ -152,7 +153,7 @@ void add_sweep_run(CLI::App& sweep, Context& context) {
 void add_sweep_worker(CLI::App& sweep, Context& context) {
   auto plan = std::make_shared<std::string>();
   Verb verb = add_verb(sweep, context, "worker", "What 'kerf sweep run' starts", "kerf sweep worker PLAN",
-                       [plan] { serve_cells(*plan, processes::first_descriptor); });
+                       [plan] { serve_cells(*plan, processes::first_descriptor, swept_verbs()); });
   verb.hidden().takes_laws(context);
   verb.add_option("PLAN", *plan, "The plan").required();
 }

@@ -6,6 +6,7 @@
 
 #include "files/whole_file.h"
 #include "plan/plan_file.h"
+#include "study/swept_verbs.h"
 #include "study/verb_sweep.h"
 #include "submit/sweep_scripts.h"
 
@@ -26,7 +27,7 @@ struct SweepSubmitArguments {
 };
 
 void run_sweep_submit(const SweepSubmitArguments& arguments, Context& context) {
-  const PlanFile plan = read_plan(arguments.plan);
+  const PlanFile plan = read_plan(arguments.plan, swept_verbs());
   SubmitOptions options = arguments.options;
   options.engine = sweep_engine_called(arguments.engine);
   options.at_once = arguments.at_once;

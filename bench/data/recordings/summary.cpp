@@ -12,6 +12,7 @@
 #include <fmt/core.h>
 
 #include "clocks/time_stamp.h"
+#include "segment/cycle_edit.h"
 
 namespace kerf::bench {
 namespace {
@@ -124,6 +125,8 @@ void add_cycles(nlohmann::ordered_json& summary, const schema::Recording& record
                        {"filter_corner_hz", cycles.filter_corner_hz},
                        {"phases", cycles.phases.size()},
                        {"grid_points", cycles.grid.size()}};
+  for (const ToldEdit& edit : edits_of(recording.header))
+    summary["cycles"]["edits"].push_back({{"time", edit.time}, {"author", edit.author}, {"what", edit.what}});
   if (!recording.cycle_flags) return;
   std::set<std::uint32_t> flagged;
   std::set<std::uint32_t> accepted;
@@ -182,6 +185,11 @@ std::string summary_table(const nlohmann::ordered_json& summary) {
         fmt::format(
             "{} along {}{}", cycles["count"].get<std::size_t>(), cycles["axis"].get<std::string>(),
             cycles.contains("flagged") ? fmt::format(", {} of them flagged", cycles["flagged"].size()) : ""));
+    if (cycles.contains("edits")) {
+      const auto& last = cycles["edits"].back();
+      line("edited", fmt::format("by {} at {}: {}", last["author"].get<std::string>(),
+                                 last["time"].get<std::string>(), last["what"].get<std::string>()));
+    }
   }
   if (summary.contains("history")) {
     for (const auto& step : summary["history"]) line("history", step.get<std::string>());

@@ -13,30 +13,13 @@
 
 #include "recordings/axis_values.h"
 #include "recordings/provenance.h"
-#include "recordings/row_figures.h"
+#include "segment/branches.h"
 #include "signal/quantiles.h"
-#include "signal/smoothed_values.h"
 
 namespace kerf::bench {
 namespace {
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-
-/// One axis, low-passed, with the position counted positive in the direction of closing.
-class Motion {
- public:
-  Motion(const SmoothedValues& position, const SmoothedValues& force) : position_(position), force_(force) {}
-
-  void close_along(double direction) { direction_ = direction; }
-  [[nodiscard]] std::uint64_t rows() const noexcept { return position_.size(); }
-  [[nodiscard]] double position(std::uint64_t row) const { return direction_ * position_[row]; }
-  [[nodiscard]] double force(std::uint64_t row) const { return force_[row]; }
-
- private:
-  const SmoothedValues& position_;
-  const SmoothedValues& force_;
-  double direction_ = 1.0;
-};
 
 /// A turning point of the motion.
 struct Turn {
@@ -46,7 +29,7 @@ struct Turn {
 };
 
 /// Least and most position.
-std::pair<double, double> range_of(const Motion& motion) {
+std::pair<double, double> range_of(const AxisMotion& motion) {
   double least = motion.position(0);
   double most = least;
   for (std::uint64_t row = 1; row < motion.rows(); ++row) {
@@ -57,7 +40,7 @@ std::pair<double, double> range_of(const Motion& motion) {
 }
 
 /// Turning points whose prominence is at least `height`, alternately closed and open.
-std::vector<Turn> find_turns(const Motion& motion, double height) {
+std::vector<Turn> find_turns(const AxisMotion& motion, double height) {
   std::vector<Turn> turns;
   Turn highest{.row = 0, .position = motion.position(0), .closed = true};
   Turn lowest{.row = 0, .position = motion.position(0), .closed = false};
@@ -86,7 +69,7 @@ struct Stroke {
   std::uint64_t end = 0;
 };
 
-Stroke stroke_between(const Motion& motion, const Turn& from, const Turn& to, double dwell) {
+Stroke stroke_between(const AxisMotion& motion, const Turn& from, const Turn& to, double dwell) {
   const double height = to.position - from.position;
   const auto share = [&](std::uint64_t row) { return (motion.position(row) - from.position) / height; };
   Stroke stroke{.begin = from.row, .end = to.row};
@@ -101,7 +84,7 @@ Stroke stroke_between(const Motion& motion, const Turn& from, const Turn& to, do
 }
 
 /// The work done along strokes that raise the position, less that along those that lower it.
-double work_of_rising(const Motion& motion, const std::vector<Turn>& turns) {
+double work_of_rising(const AxisMotion& motion, const std::vector<Turn>& turns) {
   double rising = 0.0;
   double falling = 0.0;
   for (std::size_t i = 1; i < turns.size(); ++i) {
@@ -112,33 +95,6 @@ double work_of_rising(const Motion& motion, const std::vector<Turn>& turns) {
     (turns[i].closed ? rising : falling) += work;
   }
   return rising - falling;
-}
-
-/// Mean force of the rows of a stroke at each grid position: of the rows nearest to it, or between its
-/// neighbours.
-std::vector<double> on_grid(const Motion& motion, const Stroke& stroke, const std::vector<double>& grid) {
-  std::vector<double> sum(grid.size(), 0.0);
-  std::vector<double> count(grid.size(), 0.0);
-  const double step = (grid.back() - grid.front()) / static_cast<double>(grid.size() - 1);
-  for (std::uint64_t row = stroke.begin; row < stroke.end; ++row) {
-    const double place = (motion.position(row) - grid.front()) / step;
-    if (!(place > -0.5 && place < static_cast<double>(grid.size()) - 0.5)) continue;
-    const auto cell = static_cast<std::size_t>(std::lround(std::max(place, 0.0)));
-    sum[cell] += motion.force(row);
-    count[cell] += 1.0;
-  }
-  std::vector<double> force(grid.size(), nothing);
-  std::size_t last = grid.size();
-  for (std::size_t cell = 0; cell < grid.size(); ++cell) {
-    if (count[cell] == 0.0) continue;
-    force[cell] = sum[cell] / count[cell];
-    for (std::size_t between = last + 1; last < grid.size() && between < cell; ++between) {
-      const double share = static_cast<double>(between - last) / static_cast<double>(cell - last);
-      force[between] = force[last] + share * (force[cell] - force[last]);
-    }
-    last = cell;
-  }
-  return force;
 }
 
 void check(const schema::RecordedRows& rows, const SegmentOptions& options) {
@@ -152,30 +108,13 @@ void check(const schema::RecordedRows& rows, const SegmentOptions& options) {
   if (rows.rows() < 10) throw std::invalid_argument("the recording is too short for a cycle");
 }
 
-void require_finite(const BlockedValues& position, const BlockedValues& force) {
-  for (std::uint64_t row = 0; row < position.size(); ++row) {
-    if (!std::isfinite(position[row]) || !std::isfinite(force[row])) {
-      throw std::invalid_argument(
-          fmt::format("row {} is not finite; 'kerf prepare --drop-gaps' leaves such rows out", row));
-    }
-  }
-}
-
-/// Appends the four phases of every closing to `cycles.phases` and its branches to the grids.
-void add_cycles(schema::Cycles& cycles, const Motion& motion, const std::vector<Turn>& turns, double dwell) {
+/// Appends the four phases of every closing.
+void add_phases(std::vector<schema::PhaseSpan>& phases, const AxisMotion& motion,
+                const std::vector<Turn>& turns, double dwell) {
   std::uint32_t cycle = 0;
   std::uint64_t free_from = 0;  // first row that no phase has yet
   const auto add = [&](schema::Phase phase, std::uint64_t begin, std::uint64_t end) {
-    if (end > begin) cycles.phases.push_back({.cycle = cycle, .phase = phase, .begin = begin, .end = end});
-  };
-  std::vector<double> grid = cycles.grid;
-  for (double& position : grid) position *= cycles.closing_direction;
-  const bool turned = grid.front() > grid.back();
-  if (turned) std::reverse(grid.begin(), grid.end());
-  const auto branch = [&](const Stroke& along) {
-    auto force = on_grid(motion, along, grid);
-    if (turned) std::reverse(force.begin(), force.end());
-    return force;
+    if (end > begin) phases.push_back({.cycle = cycle, .phase = phase, .begin = begin, .end = end});
   };
   const auto stroke = [&](std::size_t turn) {
     return stroke_between(motion, turns[turn], turns[turn + 1], dwell);
@@ -187,12 +126,10 @@ void add_cycles(schema::Cycles& cycles, const Motion& motion, const std::vector<
     const Stroke closing = stroke(i);
     add(schema::Phase::open_to_close, free_from, closing.begin);
     add(schema::Phase::closing, closing.begin, closing.end);
-    cycles.closing.push_back(branch(closing));
     const bool opens_again = i + 2 < turns.size();
     const Stroke opening = opens_again ? stroke(i + 1) : Stroke{motion.rows(), motion.rows()};
     add(schema::Phase::close_to_open, closing.end, opening.begin);
     add(schema::Phase::opening, opening.begin, opening.end);
-    cycles.opening.push_back(branch(opening));
     free_from = opening.end;
   }
 }
@@ -216,15 +153,7 @@ std::vector<double> mean_branch(const std::vector<std::vector<double>>& branches
 
 schema::Cycles find_cycles(const schema::RecordedRows& rows, const SegmentOptions& options) {
   check(rows, options);
-  const BlockedValues time_s = axis_values(rows, schema::Column::time);
-  const BlockedValues position = axis_values(rows, schema::Column::position, options.axis);
-  const BlockedValues force = axis_values(rows, force_column(rows), options.axis);
-  require_finite(position, force);
-  const UniformTimes grid(time_s, median_step(rows));
-  const double corner_hz = std::min(options.corner_hz, 0.2 * grid.rate_hz());
-  const SmoothedValues smooth_position(position, grid, corner_hz);
-  const SmoothedValues smooth_force(force, grid, corner_hz);
-  Motion motion(smooth_position, smooth_force);
+  AxisMotion motion(rows, options.axis, options.corner_hz);
   const auto [least, most] = range_of(motion);
   const double height = options.prominence * (most - least);
   // A filter leaves rounding on a constant, which turns often.
@@ -233,7 +162,7 @@ schema::Cycles find_cycles(const schema::RecordedRows& rows, const SegmentOption
 
   schema::Cycles cycles;
   cycles.axis = options.axis;
-  cycles.filter_corner_hz = corner_hz;
+  cycles.filter_corner_hz = motion.corner_hz();
   cycles.closing_direction = options.closing_direction ? *options.closing_direction
                                                        : (work_of_rising(motion, turns) >= 0.0 ? 1.0 : -1.0);
   motion.close_along(cycles.closing_direction);
@@ -258,9 +187,8 @@ schema::Cycles find_cycles(const schema::RecordedRows& rows, const SegmentOption
                           share * (cycles.closing_direction * end - cycles.contact_position));
   }
   if (cycles.closing_direction < 0.0) std::reverse(cycles.grid.begin(), cycles.grid.end());
-  add_cycles(cycles, motion, turns, options.dwell);
-  cycles.closing_mean = mean_branch(cycles.closing, options.points);
-  cycles.opening_mean = mean_branch(cycles.opening, options.points);
+  add_phases(cycles.phases, motion, turns, options.dwell);
+  average_branches(cycles, motion);
   return cycles;
 }
 

@@ -3,44 +3,21 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
-#include <deque>
-#include <filesystem>
-#include <fstream>
 #include <initializer_list>
 #include <limits>
-#include <stdexcept>
-#include <system_error>
 #include <utility>
 
 #include <fmt/core.h>
 #include <fmt/format.h>
-#include <stdio.h>
-#include <sys/mman.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <kerf/version.h>
-
-#include "files/whole_file.h"
-#include "html/html.h"
 #include "plot/colours.h"
+#include "plot/gnuplot.h"
 
 namespace kerf::bench {
 namespace {
 
 constexpr std::array colours{"#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7",
                              "#E69F00", "#56B4E9", "#F0E442", "#8A8A8A"};
-
-/// A gnuplot string: single quotes doubled, no line breaks.
-std::string gnuplot_text(std::string_view text) {
-  std::string result = "'";
-  for (const char c : text) {
-    if (c == '\'') result += '\'';
-    result += c == '\n' || c == '\r' ? ' ' : c;
-  }
-  return result + "'";
-}
 
 std::string style_of(const Curve& curve) {
   switch (curve.mark) {
@@ -248,15 +225,6 @@ std::string script_of(const Chart& chart, const std::string& output) {
   return script + "\n";
 }
 
-/// With title and maker in place of gnuplot's, which a browser would show beside the pointer.
-std::string named(std::string svg, const std::string& title) {
-  const auto begin = svg.find("<title>");
-  const auto end = svg.find("</desc>");
-  if (begin == std::string::npos || end == std::string::npos) return svg;
-  return svg.replace(begin, end - begin,
-                     fmt::format("<title>{}</title>\n<desc>{}, by gnuplot", escaped(title), software()));
-}
-
 /// Where a column is smallest and largest within a stretch; where it is NaN only if it is nothing else.
 class Spread {
  public:
@@ -278,54 +246,16 @@ class Spread {
   bool is_first_ = true;
 };
 
-/// A file in memory that another program can write by its name; whoever is killed leaves nothing behind.
-class NamedMemory {
- public:
-  NamedMemory() : descriptor_(memfd_create("kerf-chart", MFD_CLOEXEC)) {
-    if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), "no memory for a chart");
-    path_ = fmt::format("/proc/{}/fd/{}", getpid(), descriptor_);
-  }
-  NamedMemory(const NamedMemory&) = delete;
-  NamedMemory& operator=(const NamedMemory&) = delete;
-  ~NamedMemory() { close(descriptor_); }
-  [[nodiscard]] const std::string& path() const { return path_; }
-
- private:
-  int descriptor_;
-  std::string path_;
-};
-
 }  // namespace
 
 std::string_view hex_of(Colour colour) noexcept { return colours[static_cast<std::size_t>(colour)]; }
 
 std::vector<std::string> draw_all(std::span<const Chart> charts) {
-  std::deque<NamedMemory> outputs;
-  std::string script;
-  for (const Chart& chart : charts) script += script_of(chart, outputs.emplace_back().path());
-  const NamedMemory errors;
-  // From a file: of its standard input it reads every character by a call of its own.
-  const NamedMemory commands;
-  std::ofstream(commands.path()) << script;
-  const std::string command = "gnuplot " + commands.path() + " 2>" + errors.path();
-  FILE* pipe = popen(command.c_str(), "w");
-  if (pipe == nullptr) throw std::system_error(errno, std::generic_category(), "cannot start gnuplot");
-  const int status = pclose(pipe);
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 127) {
-    throw std::runtime_error("gnuplot is not installed; charts need it: apt-get install gnuplot-nox");
-  }
-  std::vector<std::string> drawings;
-  for (std::size_t i = 0; i < charts.size(); ++i) {
-    const std::string svg = read_whole_file(outputs[i].path());
-    const auto begin = svg.find("<svg");
-    if (begin == std::string::npos || svg.rfind("</svg>") == std::string::npos) {
-      throw std::runtime_error(
-          fmt::format("gnuplot could not draw '{}': {}", charts[i].title, read_whole_file(errors.path())));
-    }
-    drawings.push_back(named(svg.substr(begin), charts[i].title));
-  }
-  if (status != 0) throw std::runtime_error("gnuplot failed: " + read_whole_file(errors.path()));
-  return drawings;
+  std::vector<GnuplotScript> scripts;
+  for (const Chart& chart : charts)
+    scripts.push_back({.title = chart.title,
+                       .text = [&chart](const std::string& output) { return script_of(chart, output); }});
+  return run_gnuplot(scripts);
 }
 
 std::string draw(const Chart& chart) { return draw_all(std::span(&chart, 1)).front(); }

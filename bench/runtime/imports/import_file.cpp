@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <sstream>
 #include <stdexcept>
 
 #include "files/named_file.h"
@@ -41,6 +42,10 @@ std::array<double, 3> point_of(const Place& place, const toml::node& node, std::
     if (!std::isfinite(point.at(i))) place.refuse(node, "'{}' must be three finite numbers [{}]", key, unit);
   }
   return point;
+}
+
+void append(std::string& text, std::string_view key, const std::array<double, 3>& point) {
+  text += fmt::format("{} = [{}, {}, {}]\n", key, point[0], point[1], point[2]);
 }
 
 std::string map_of(const Place& place, const toml::table& table) {
@@ -85,6 +90,29 @@ ImportFile read_import_file(const std::filesystem::path& file) {
   if (const toml::node* rotation = table.get("sensor_rotation"))
     options.places.sensor_rotation_rad = radians_of(point_of(place, *rotation, "sensor_rotation", "deg"));
   return read;
+}
+
+std::string import_file_text(const ImportFile& file) {
+  const ImportOptions& options = file.options;
+  std::ostringstream quoted;
+  quoted << "map = " << toml::value<std::string>(file.map) << '\n';
+  if (!options.sheet.empty()) quoted << "sheet = " << toml::value<std::string>(options.sheet) << '\n';
+  std::string text = quoted.str();
+  if (options.stretch > 0) text += fmt::format("stretch = {}\n", options.stretch);
+  if (options.rate_hz > 0.0) text += fmt::format("rate = {}\n", options.rate_hz);
+  if (options.resample_hz > 0.0) text += fmt::format("resample = {}\n", options.resample_hz);
+  if (options.velocity_window_s > 0.0)
+    text += fmt::format("velocity_window = {}\n", options.velocity_window_s);
+  const SpatialPlaces& places = options.places;
+  if (places.origin_m != std::array<double, 3>{}) append(text, "origin", places.origin_m);
+  if (places.point_m) append(text, "point", *places.point_m);
+  if (places.sensor_rotation_rad) {
+    std::array<double, 3> degrees = *places.sensor_rotation_rad;
+    for (double& angle : degrees) angle *= 180.0 / std::numbers::pi;
+    append(text, "sensor_rotation", degrees);
+  }
+  if (options.strict) text += "strict = true\n";
+  return text;
 }
 
 std::array<double, 3> radians_of(std::array<double, 3> degrees) {

@@ -32,6 +32,9 @@ struct ImportFile {
 /// @throws std::invalid_argument with file and line.
 [[nodiscard]] ImportFile read_import_file(const std::filesystem::path& file);
 
+/// The same as text: what read_import_file() reads back as it was.
+[[nodiscard]] std::string import_file_text(const ImportFile& file);
+
 /// A rotation vector that people give in degrees.
 [[nodiscard]] std::array<double, 3> radians_of(std::array<double, 3> degrees);
 

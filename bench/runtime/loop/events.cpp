@@ -11,7 +11,8 @@ constexpr double quiet_s = 0.25;
 
 std::string text_of(const schema::FlagInfo& flag, std::uint64_t missing) {
   if (missing > 0 && (flag.flag == schema::flag_missed_deadline || flag.flag == schema::flag_rows_lost)) {
-    return fmt::format("{} ticks are not in the file: {}", missing, flag.meaning);
+    return fmt::format("{} not in the file: {}",
+                       missing == 1 ? "1 tick is" : fmt::format("{} ticks are", missing), flag.meaning);
   }
   return std::string(flag.meaning);
 }

@@ -5,7 +5,29 @@
 #include <stdexcept>
 #include <utility>
 
+#include "observers/simulate.h"
+#include "registered/experiment.h"
+
 namespace kerf::bench {
+
+Protocol protocol_to_simulate(const std::filesystem::path& file, SimulationOptions& options) {
+  if (!is_experiment(file)) return read_protocol(file);
+  const std::filesystem::path registered = experiment_file(file);
+  const Experiment experiment = read_experiment(registered);
+  if (options.subjects != 1 || options.analysis.margin || options.analysis.d_prime_bound)
+    throw std::invalid_argument(
+        "the experiment has the number of its participants and its margins: leave out --subjects, --margin "
+        "and --equal-below");
+  options.subjects = experiment.participants.target;
+  options.visits = experiment.participants.visits;
+  options.analysis.level = experiment.analysis.alpha;
+  options.analysis.margin = experiment.analysis.margin;
+  options.analysis.d_prime_bound = experiment.analysis.d_prime;
+  options.analysis.jnd_margins = experiment.analysis.jnd_margins;
+  options.catch_right = experiment.analysis.exclude.catch_right;
+  options.experiment = experiment;
+  return protocol_of(experiment, registered);
+}
 
 Protocol with_trials(Protocol protocol, std::size_t trials) {
   if (trials == 0) throw std::invalid_argument("a session needs a trial at least");

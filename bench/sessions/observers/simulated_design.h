@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <string>
 
 #include "protocol/protocol.h"
@@ -8,6 +9,14 @@
 // How large a design is, and the same design larger or smaller.
 
 namespace kerf::bench {
+
+struct SimulationOptions;
+
+/// The protocol in a file; of an experiment that which it names, and its number of participants, its test and
+/// its stopping rule come into the options.
+/// @throws std::invalid_argument as read_protocol() and read_experiment(), and if the options have already
+///         what an experiment brings.
+[[nodiscard]] Protocol protocol_to_simulate(const std::filesystem::path& file, SimulationOptions& options);
 
 /// The protocol with another number of trials: of each pair or level; of a staircase at most so many.
 /// @throws std::invalid_argument: none.

@@ -45,6 +45,7 @@ void LiveHub::drain() {
         }
         timing_.add(row);
         if (recording_) record(row);
+        while (!marks_.empty()) events.push_back(next_mark(row));
       }
       ticks_ = rows.back().tick + 1;
       rows_ += count;
@@ -52,6 +53,18 @@ void LiveHub::drain() {
     history_.append(rows, events);
   }
   (void)rendering_.collect();
+}
+
+LiveEvent LiveHub::next_mark(const schema::Row& row) {
+  LiveEvent mark{.tick = row.tick, .event = {.time_s = row.time_s, .kind = "mark", .text = marks_.front()}};
+  marks_.erase(marks_.begin());
+  if (recording_) recording_->mark(row.tick, mark.event.kind, mark.event.text);
+  return mark;
+}
+
+void LiveHub::mark(const std::string& text) {
+  const std::lock_guard lock(mutex_);
+  marks_.push_back(text);
 }
 
 std::vector<LiveEvent> LiveHub::events_until(std::uint64_t tick) {

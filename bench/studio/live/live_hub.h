@@ -50,6 +50,9 @@ class LiveHub {
   /// Offers a rendering under a name; none: nothing.
   void offer(std::unique_ptr<LawRendering> rendering, const Rendered& rendered);
 
+  /// A person marks the next rows that come out: an event of the kind "mark", also in a recording.
+  void mark(const std::string& text);
+
   /// @throws std::invalid_argument: another recording is under way, or the file exists; std::system_error.
   void start_recording(const std::filesystem::path& file, bool replace);
   /// @throws std::invalid_argument: there is none; std::system_error: it could not be written to its end.
@@ -64,6 +67,7 @@ class LiveHub {
   static constexpr std::size_t tap_rows = 8192;
 
   [[nodiscard]] std::vector<LiveEvent> events_until(std::uint64_t tick);
+  [[nodiscard]] LiveEvent next_mark(const schema::Row& row);
   [[nodiscard]] schema::Event event_of(const LiveChange& change);
   void record(const schema::Row& row);
   [[nodiscard]] std::string close(RunningRecording& recording, const RunningRecording::Ending& ending);
@@ -78,7 +82,8 @@ class LiveHub {
   std::vector<schema::Row> chunk_;
   std::deque<LiveChange> changes_;  ///< whose rows have not come yet
 
-  mutable std::mutex mutex_;  ///< of what follows; nothing slow is done under it
+  mutable std::mutex mutex_;        ///< of what follows; nothing slow is done under it
+  std::vector<std::string> marks_;  ///< whose rows have not come yet
   std::map<std::uint64_t, Rendered> offered_;
   Rendered rendered_;
   bool is_released_ = false;  ///< as of the last row

@@ -181,6 +181,8 @@ void LiveLoop::start_recording(const std::filesystem::path& file, bool replace) 
   running_hub()->start_recording(file, replace);
 }
 
+void LiveLoop::mark(const std::string& text) { running_hub()->mark(text); }
+
 void LiveLoop::stop_recording() { running_hub()->stop_recording(); }
 
 LiveLoop::Watched LiveLoop::watched() const {

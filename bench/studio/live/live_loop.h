@@ -73,6 +73,10 @@ class LiveLoop {
   /// Goes softly over to no force. @throws std::invalid_argument: no loop runs.
   void render_nothing();
 
+  /// Marks this moment by an event of the kind "mark", which a recording holds too.
+  /// @throws std::invalid_argument: no loop runs.
+  void mark(const std::string& text);
+
   /// Zero force from the next tick on, held until resume(), also over a new start. Never blocks, and needs no
   /// running loop.
   void release_force() noexcept { rendering_.release(); }

@@ -15,6 +15,7 @@ using Pace = Routes::Pace;
 constexpr std::size_t max_sent_ticks = 100'000;  ///< in a column
 constexpr std::size_t max_sent_columns = 10'000;
 constexpr double latest_s = 1e7;
+constexpr std::size_t longest_mark = 200;  ///< bytes: an event of a recording has room for 256
 
 /// One viewer of the stream; sees nothing of the loop while a session runs.
 class LiveViewer {
@@ -122,6 +123,16 @@ class LiveAnswers {
     return status();
   }
 
+  [[nodiscard]] HttpResponse mark(const HttpRequest& request) const {
+    const std::string text = text_in(json_in(request), "text");
+    const auto steers = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+    if (text.empty() || text.size() > longest_mark || std::ranges::any_of(text, steers))
+      throw RequestError(400, "a mark is one line of 1 to 200 bytes");
+    require_running();
+    loop_.mark(text);
+    return status();
+  }
+
   [[nodiscard]] HttpResponse record(const HttpRequest& request) const {
     const std::string name = text_in(json_in(request), "name");
     require_running();
@@ -178,6 +189,7 @@ void add_live_routes(Routes& routes, LiveLoop& loop, const LiveHooks& hooks) {
   post("/api/live/resume", Pace::at_once, [answers](Request) { return answers->resume(); });
   post("/api/live/confirm", Pace::at_once, [answers](Request) { return answers->confirm(); });
   post("/api/live/dismiss", Pace::at_once, [answers](Request) { return answers->dismiss(); });
+  post("/api/live/mark", Pace::action, [answers](Request it) { return answers->mark(it); });
   post("/api/live/record", Pace::action, [answers](Request it) { return answers->record(it); });
   post("/api/live/record/stop", Pace::action, [answers](Request) { return answers->stop_recording(); });
 }

@@ -36,6 +36,7 @@ struct LiveHooks {
 ///     POST /api/live/resume   {}
 ///     POST /api/live/confirm  {}: the tool is where it seems to be after a jump of the position
 ///     POST /api/live/dismiss  {}: the fault that ended the last loop has been read
+///     POST /api/live/mark     {"text"}: an event "mark" of this moment, also in the recording
 ///     POST /api/live/record   {"name"}
 ///     POST /api/live/record/stop   {}
 ///

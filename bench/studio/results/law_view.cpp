@@ -13,7 +13,7 @@
 namespace kerf::bench {
 namespace {
 
-using json = nlohmann::ordered_json;
+using nlohmann::ordered_json;
 
 constexpr std::size_t steps = 1000;  // of a millisecond, each way
 constexpr std::size_t shown_every = 5;
@@ -57,23 +57,24 @@ PictureRange range_of(const LawFile& law) {
   return {default_depth_m, "10 mm: the law itself has no end"};
 }
 
-json options_of(const models::Options& options) {
-  json object = json::object();
+ordered_json options_of(const models::Options& options) {
+  ordered_json object = ordered_json::object();
   for (const auto& [name, value] : options)
-    object[name] = std::visit([](const auto& one) { return json(one); }, value);
+    object[name] = std::visit([](const auto& one) { return ordered_json(one); }, value);
   return object;
 }
 
-json parameters_of(const LawFile& law) {
-  json list = json::array();
+ordered_json parameters_of(const LawFile& law) {
+  ordered_json list = ordered_json::array();
   const auto parameters = law.law.parameters();
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const models::ParameterInfo& info = parameters[i];
-    list.push_back({{"name", info.name},
-                    {"value", law.law.values()[i]},
-                    {"unit", models::unit_of(info.quantity, law.force_unit, law.position_unit)},
-                    {"std_error", i < law.std_errors.size() ? json_number(law.std_errors[i]) : json(nullptr)},
-                    {"meaning", info.meaning}});
+    list.push_back(
+        {{"name", info.name},
+         {"value", law.law.values()[i]},
+         {"unit", models::unit_of(info.quantity, law.force_unit, law.position_unit)},
+         {"std_error", i < law.std_errors.size() ? json_number(law.std_errors[i]) : ordered_json(nullptr)},
+         {"meaning", info.meaning}});
   }
   return list;
 }
@@ -105,7 +106,7 @@ LawCurve curve_of(const LawFile& file) {
   return curve;
 }
 
-json law_as_json(const LawFile& law, const std::string& name) {
+ordered_json law_as_json(const LawFile& law, const std::string& name) {
   const LawCurve curve = curve_of(law);
   return {{"name", name},
           {"model", law.law.model()},

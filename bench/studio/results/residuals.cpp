@@ -14,28 +14,65 @@
 #include "inspect/counted_rows.h"
 #include "laws/render.h"
 #include "recordings/axis_series.h"
+#include "results/error_places.h"
 
 namespace kerf::bench {
 namespace {
 
-using json = nlohmann::ordered_json;
+using Json = nlohmann::ordered_json;
 
-constexpr std::size_t bins = 60;
+constexpr std::size_t most_bins = 60;
 constexpr std::size_t fewest_in_bin = 5;
 
-/// Numbers that fell into bins of penetration.
+/// Bins of penetration, none with hardly any row: an encoder may have fewer steps than there are bins.
+class Bins {
+ public:
+  explicit Bins(const std::vector<double>& penetration) {
+    const auto [least, most] = std::minmax_element(penetration.begin(), penetration.end());
+    const double width = std::max(1e-12, (*most - *least) / static_cast<double>(most_bins));
+    std::array<std::size_t, most_bins> rows{};
+    for (const double at : penetration) ++rows[equal_bin(at, *least, width)];
+    std::array<std::size_t, most_bins> merged{};
+    std::size_t in_bin = 0;
+    std::size_t left = penetration.size();
+    for (std::size_t bin = 0; bin < most_bins; ++bin) {
+      merged[bin] = count_;
+      in_bin += rows[bin];
+      left -= rows[bin];
+      if (in_bin < fewest_in_bin || left < fewest_in_bin) continue;
+      ++count_;
+      in_bin = 0;
+    }
+    ++count_;
+    of_row_.reserve(penetration.size());
+    for (const double at : penetration) of_row_.push_back(merged[equal_bin(at, *least, width)]);
+  }
+  [[nodiscard]] std::size_t count() const { return count_; }
+  [[nodiscard]] std::size_t of(std::size_t row) const { return of_row_[row]; }
+
+ private:
+  static std::size_t equal_bin(double at, double least, double width) {
+    return std::min(most_bins - 1, static_cast<std::size_t>(std::max(0.0, (at - least) / width)));
+  }
+
+  std::size_t count_ = 0;
+  std::vector<std::size_t> of_row_;
+};
+
+/// Numbers that fell into bins.
 class Binned {
  public:
+  explicit Binned(std::size_t bins) : count_(bins), sum_(bins), squares_(bins) {}
   void add(std::size_t bin, double value) {
     ++count_[bin];
     sum_[bin] += value;
     squares_[bin] += value * value;
   }
-  /// Mean and so many standard deviations above it; null where there are few.
-  [[nodiscard]] json means(double deviations = 0.0) const {
-    json list = json::array();
-    for (std::size_t bin = 0; bin < bins; ++bin) {
-      if (count_[bin] < fewest_in_bin) {
+  /// Mean and so many standard deviations above it; null where there are fewer rows than that.
+  [[nodiscard]] Json means(double deviations = 0.0, std::size_t fewest = fewest_in_bin) const {
+    Json list = Json::array();
+    for (std::size_t bin = 0; bin < count_.size(); ++bin) {
+      if (count_[bin] < fewest) {
         list.push_back(nullptr);
         continue;
       }
@@ -48,9 +85,9 @@ class Binned {
   }
 
  private:
-  std::array<std::size_t, bins> count_{};
-  std::array<double, bins> sum_{};
-  std::array<double, bins> squares_{};
+  std::vector<std::size_t> count_;
+  std::vector<double> sum_;
+  std::vector<double> squares_;
 };
 
 void check_units(const LawFile& law, const schema::Axis& axis) {
@@ -63,63 +100,96 @@ void check_units(const LawFile& law, const schema::Axis& axis) {
                                           axis.position_unit));
 }
 
-void add_over_time(const AxisSeries& series, const std::vector<double>& residual, std::size_t columns,
-                   json& to) {
+/// Smallest and largest of a stretch of rows, in columns.
+struct ColumnExtremes {
+  Json smallest = Json::array();
+  Json largest = Json::array();
+
+  void add(const std::vector<double>& values, std::size_t begin, std::size_t end) {
+    const auto [least, most] = std::minmax_element(values.begin() + static_cast<std::ptrdiff_t>(begin),
+                                                   values.begin() + static_cast<std::ptrdiff_t>(end));
+    smallest.push_back(*least);
+    largest.push_back(*most);
+  }
+};
+
+void add_over_time(const AxisSeries& series, const std::vector<double>& force,
+                   const std::vector<double>& residual, std::size_t columns, Json& to) {
   const std::size_t rows = residual.size();
   const std::size_t count = std::clamp<std::size_t>(columns, 1, rows);
-  std::array<json, 3> lists{json::array(), json::array(), json::array()};
+  Json time_s = Json::array();
+  ColumnExtremes left;
+  ColumnExtremes measured;
+  ColumnExtremes by_law;
   for (std::size_t column = 0; column < count; ++column) {
-    const auto begin = static_cast<std::ptrdiff_t>(column * rows / count);
-    const auto end = static_cast<std::ptrdiff_t>((column + 1) * rows / count);
-    const auto [least, most] = std::minmax_element(residual.begin() + begin, residual.begin() + end);
-    lists[0].push_back(series.time_s[static_cast<std::size_t>(begin)]);
-    lists[1].push_back(*least);
-    lists[2].push_back(*most);
+    const std::size_t begin = column * rows / count;
+    const std::size_t end = (column + 1) * rows / count;
+    time_s.push_back(series.time_s[begin]);
+    left.add(residual, begin, end);
+    measured.add(series.force, begin, end);
+    by_law.add(force, begin, end);
   }
-  to["time_s"] = std::move(lists[0]);
-  to["smallest"] = std::move(lists[1]);
-  to["largest"] = std::move(lists[2]);
+  to["time_s"] = std::move(time_s);
+  to["smallest"] = std::move(left.smallest);
+  to["largest"] = std::move(left.largest);
+  to["over_time"] = {{"measured_smallest", std::move(measured.smallest)},
+                     {"measured_largest", std::move(measured.largest)},
+                     {"law_smallest", std::move(by_law.smallest)},
+                     {"law_largest", std::move(by_law.largest)}};
 }
 
-void add_over_penetration(const AxisSeries& series, const std::vector<double>& force, json& to) {
-  const auto [least, most] = std::minmax_element(series.penetration.begin(), series.penetration.end());
-  const double first = *least;
-  const double width = std::max(1e-12, (*most - first) / static_cast<double>(bins));
-  Binned residual;
-  std::array<Binned, 2> measured;  // closing, opening
-  std::array<Binned, 2> by_law;
-  for (std::size_t i = 0; i < force.size(); ++i) {
-    const double place = (series.penetration[i] - first) / width;
-    const std::size_t bin = std::min(bins - 1, static_cast<std::size_t>(std::max(0.0, place)));
-    const std::size_t branch = series.velocity[i] >= 0.0 ? 0 : 1;
-    residual.add(bin, force[i] - series.force[i]);
-    measured[branch].add(bin, series.force[i]);
-    by_law[branch].add(bin, force[i]);
+/// Of each row, closing and opening apart.
+std::size_t branch_of(const AxisSeries& series, std::size_t row) {
+  return series.velocity[row] >= 0.0 ? 0 : 1;
+}
+
+void add_over_penetration(const AxisSeries& series, const Bins& bins, const std::vector<double>& force,
+                          Json& to) {
+  Binned penetration(bins.count());
+  Binned residual(bins.count());
+  std::array<Binned, 2> measured{Binned(bins.count()), Binned(bins.count())};  // closing, opening
+  std::array<Binned, 2> by_law = measured;
+  for (std::size_t row = 0; row < force.size(); ++row) {
+    const std::size_t bin = bins.of(row);
+    const std::size_t branch = branch_of(series, row);
+    penetration.add(bin, series.penetration[row]);
+    residual.add(bin, force[row] - series.force[row]);
+    measured[branch].add(bin, series.force[row]);
+    by_law[branch].add(bin, force[row]);
   }
-  json penetration = json::array();
-  for (std::size_t bin = 0; bin < bins; ++bin)
-    penetration.push_back(first + width * (static_cast<double>(bin) + 0.5));
-  to["penetration"] = std::move(penetration);
-  to["mean"] = residual.means();
-  to["low"] = residual.means(-1.0);
-  to["high"] = residual.means(1.0);
+  to["penetration"] = penetration.means(0.0, 1);
+  to["mean"] = residual.means(0.0, 1);
+  to["low"] = residual.means(-1.0, 1);
+  to["high"] = residual.means(1.0, 1);
   to["loop"] = {{"measured_closing", measured[0].means()},
                 {"measured_opening", measured[1].means()},
                 {"law_closing", by_law[0].means()},
                 {"law_opening", by_law[1].means()}};
 }
 
+void add_interval(const AxisSeries& series, const Bins& bins, const models::Law& law,
+                  const FitUncertainty& known, Json& to) {
+  const std::vector<double> half = force_interval(law, series, known);
+  if (half.empty()) return;
+  std::array<Binned, 2> wide{Binned(bins.count()), Binned(bins.count())};
+  for (std::size_t row = 0; row < half.size(); ++row)
+    wide[branch_of(series, row)].add(bins.of(row), half[row]);
+  to["interval"] = {
+      {"confidence", known.confidence}, {"closing", wide[0].means()}, {"opening", wide[1].means()}};
+}
+
 }  // namespace
 
-json residuals_of(const schema::Recording& recording, std::size_t axis, const LawFile& law,
-                  std::size_t columns) {
+Json residuals_of(const schema::Recording& recording, std::size_t axis, const LawFile& law,
+                  std::size_t columns, const std::optional<FitUncertainty>& known) {
   const schema::Axis& about = recording.axes.at(axis);
   check_units(law, about);
   AxisSeries series = fit_series(recording, axis, law.contact);
   if (series.force.empty()) throw std::invalid_argument("the recording has no row that is finite");
   const fitting::Jnd jnd = fitting::jnd_of(about.force_unit, about.lever);
   const std::size_t counted = mark_counted(series, recording, axis, {}, jnd.threshold).rows;
-  const std::vector<double> force = render(without_rendering_aids(law.law), series);
+  const models::Law fitted = without_rendering_aids(law.law);
+  const std::vector<double> force = render(fitted, series);
   std::vector<double> residual;
   double squares = 0.0;
   double worst = 0.0;
@@ -129,15 +199,18 @@ json residuals_of(const schema::Recording& recording, std::size_t axis, const La
     squares += residual.back() * residual.back();
     worst = std::max(worst, std::abs(residual.back()));
   }
-  json result{{"axis", about.name},
+  Json result{{"axis", about.name},
               {"position_unit", about.position_unit},
               {"force_unit", about.force_unit},
               {"rows", counted},
               {"rmse", std::sqrt(squares / static_cast<double>(counted))},
               {"worst", worst},
               {"jnd_n", jnd.at(fitting::rms_of(fitted_view(series)))}};
-  add_over_time(series, residual, columns, result);
-  add_over_penetration(series, force, result);
+  const Bins bins(series.penetration);
+  add_over_time(series, force, residual, columns, result);
+  add_over_penetration(series, bins, force, result);
+  result["places"] = error_places(recording, axis, series, residual);
+  if (known) add_interval(series, bins, fitted, *known, result);
   return result;
 }
 

@@ -18,23 +18,15 @@
 namespace kerf::bench {
 namespace {
 
-RecordingFit fitted(const schema::Recording& recording, const FitRequest& request,
-                    FitRecordingOptions options) {
-  const std::size_t axis = find_axis(recording, request.axis);
-  const FitSource source{.recording = &recording,
-                         .name = request.recording.path.stem().string(),
-                         .axis = axis,
-                         .contact = contact_of(recording, axis)};
-  take_jnd_of(recording.axes[axis], options.fit);
-  return fit_recordings(std::span(&source, 1), options);
-}
-
 std::string run_fit(Workspace& workspace, const FitRequest& request, JobProgress& progress) {
-  FitRecordingOptions options{.models = request.models, .stop = &progress.stop, .done = &progress.done};
-  options.fit.folds = request.folds;
+  const schema::Recording recording = schema::read_recording(request.recording.path);
+  const FitSource source = source_of(request.asked, recording, request.recording.path.stem().string());
+  FitRecordingOptions options = options_of(request.asked, source);
+  options.stop = &progress.stop;
+  options.done = &progress.done;
   options.fit.threads = usable_processors();
   progress.steps = models_of(options).size();
-  RecordingFit fit = fitted(schema::read_recording(request.recording.path), request, options);
+  RecordingFit fit = fit_recordings(std::span(&source, 1), options);
   if (fit.laws.empty()) {
     const std::string reason = fit.refusal();
     throw std::invalid_argument(reason.empty() ? "no law could be fitted" : reason);

@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "choose/candidates.h"
-#include "results/jobs.h"
+#include "fits/asked_fit.h"
+#include "jobs/jobs.h"
 #include "stability/study.h"
 #include "workspace/workspace.h"
 
@@ -20,9 +21,7 @@ namespace kerf::bench {
 /// `kerf fit`: NAME.fit.
 struct FitRequest {
   WorkspaceEntry recording;
-  std::string axis;                 ///< empty: the first
-  std::vector<std::string> models;  ///< empty: models_of()
-  std::size_t folds = 5;
+  AskedFit asked;  ///< models empty: models_of()
 };
 [[nodiscard]] JobOrder fit_job(Workspace& workspace, FitRequest request);
 

@@ -14,9 +14,13 @@
 #include "chart/fit_plan.h"
 #include "files/for_terminal.h"
 #include "files/named_file.h"
+#include "inspect/counted_rows.h"
 #include "laws/law_file.h"
 #include "plot/chart_json.h"
 #include "recordings/axes.h"
+#include "results/asked_fit_json.h"
+#include "results/force_interval.h"
+#include "results/law_files.h"
 #include "results/law_view.h"
 #include "results/residuals.h"
 #include "results/result_jobs.h"
@@ -57,23 +61,31 @@ WorkspaceEntry recording_in(const nlohmann::json& object, Workspace& workspace) 
   return workspace.find(text_in(object, "recording"), FileKind::recording);
 }
 
-HttpResponse order(Jobs& jobs, JobOrder job) { return json_response({{"job", jobs.add(std::move(job))}}); }
+/// What was asked for stands in the job's record, so that a page can ask for it again.
+HttpResponse order(Jobs& jobs, const HttpRequest& request, const nlohmann::json& given, JobOrder job) {
+  job.again = {.path = request.path, .body = given};
+  return json_response({{"job", jobs.add(std::move(job))}});
+}
 
 HttpResponse order_fit(const HttpRequest& request, Workspace& workspace, Jobs& jobs) {
   const nlohmann::json given = json_in(request);
-  FitRequest fit{.recording = recording_in(given, workspace),
-                 .axis = text_or(given, "axis", ""),
-                 .models = models_in(given),
-                 .folds = given.contains("folds") ? whole_number_in(given, "folds", 0.0, 100.0) : 5};
-  if (fit.folds == 1) throw RequestError(400, "'folds' is 0 for none, or 2 to 100");
-  return order(jobs, fit_job(workspace, std::move(fit)));
+  FitRequest fit{.recording = recording_in(given, workspace), .asked = asked_fit_in(given)};
+  fit.asked.options.models = models_in(given);
+  try {
+    check(fit.asked, 1);
+    (void)parse_cycle_choice(fit.asked.cycles);
+  } catch (const std::invalid_argument& error) {
+    throw RequestError(400, error.what());
+  }
+  return order(jobs, request, given, fit_job(workspace, std::move(fit)));
 }
 
 HttpResponse order_chart(const HttpRequest& request, Workspace& workspace, Jobs& jobs) {
   const nlohmann::json given = json_in(request);
-  return order(jobs, chart_job(workspace, {.recording = recording_in(given, workspace),
-                                           .axis = text_or(given, "axis", ""),
-                                           .models = models_in(given)}));
+  return order(jobs, request, given,
+               chart_job(workspace, {.recording = recording_in(given, workspace),
+                                     .axis = text_or(given, "axis", ""),
+                                     .models = models_in(given)}));
 }
 
 HttpResponse order_choice(const HttpRequest& request, Workspace& workspace, Jobs& jobs) {
@@ -83,7 +95,7 @@ HttpResponse order_choice(const HttpRequest& request, Workspace& workspace, Jobs
                        .rate_hz = number_or(given, "rate_hz", 1000.0, 100.0, 10000.0)};
   if (given.contains("most_segments"))
     choice.max_segments = whole_number_in(given, "most_segments", 1.0, 16.0);
-  return order(jobs, choice_job(workspace, std::move(choice)));
+  return order(jobs, request, given, choice_job(workspace, std::move(choice)));
 }
 
 HttpResponse order_stability(const HttpRequest& request, Workspace& workspace, Jobs& jobs) {
@@ -105,7 +117,7 @@ HttpResponse order_stability(const HttpRequest& request, Workspace& workspace, J
   study.range.speed_m_s = number_or(given, "speed_m_s", study.range.speed_m_s, 1e-4, 10.0);
   const std::string law = text_or(given, "law", "");
   if (!law.empty()) stability.law = workspace.find(law, FileKind::law);
-  return order(jobs, stability_job(workspace, std::move(stability)));
+  return order(jobs, request, given, stability_job(workspace, std::move(stability)));
 }
 
 /// A result, whichever kind it is of. @throws RequestError 404.
@@ -159,18 +171,26 @@ HttpResponse law(const HttpRequest& request, Workspace& workspace) {
   return json_response(law_as_json(read_law_file(entry.path), entry.name));
 }
 
+/// What the fit beside a law says of how well it is known; nothing where there is none, or another's.
+std::optional<FitUncertainty> uncertainty_of(const std::filesystem::path& law) {
+  try {
+    const std::filesystem::path fit = law.parent_path() / "fit.json";
+    if (!std::filesystem::exists(fit)) return std::nullopt;
+    return uncertainty_in(nlohmann::ordered_json::parse(read_named_file(fit, largest_result)),
+                          law.filename().string());
+  } catch (const std::exception&) {
+    return std::nullopt;  // whoever asks for the fit itself is told
+  }
+}
+
 HttpResponse residuals(const HttpRequest& request, Workspace& workspace) {
   const WorkspaceEntry file = workspace.find(text_in_query(request, "id"), FileKind::recording);
   const WorkspaceEntry law_file = workspace.find(text_in_query(request, "law"), FileKind::law);
   const std::size_t columns = count_in_query(request, "columns", max_residual_columns);
   const schema::Recording recording = schema::read_recording(file.path);
   const std::size_t axis = find_axis(recording, text_in_query(request, "axis"));
-  return json_response(residuals_of(recording, axis, read_law_file(law_file.path), columns));
-}
-
-HttpResponse stop(const HttpRequest& request, Jobs& jobs) {
-  jobs.stop(whole_number_in(json_in(request), "job", 0.0, 1e15));
-  return json_response(nlohmann::ordered_json::object());
+  return json_response(
+      residuals_of(recording, axis, read_law_file(law_file.path), columns, uncertainty_of(law_file.path)));
 }
 
 }  // namespace
@@ -178,9 +198,6 @@ HttpResponse stop(const HttpRequest& request, Jobs& jobs) {
 void add_result_routes(Routes& routes, Workspace& workspace, Jobs& jobs) {
   using Order = HttpResponse (*)(const HttpRequest&, Workspace&, Jobs&);
   using View = HttpResponse (*)(const HttpRequest&, Workspace&);
-  routes.get("/api/jobs", Pace::at_once, [&jobs](const HttpRequest&) { return json_response(jobs.list()); });
-  routes.post("/api/jobs/stop", Pace::at_once,
-              [&jobs](const HttpRequest& request) { return stop(request, jobs); });
   for (const auto& [path, take] :
        std::array<std::pair<const char*, Order>, 4>{{{"/api/fit", order_fit},
                                                      {"/api/chart", order_chart},
@@ -190,9 +207,13 @@ void add_result_routes(Routes& routes, Workspace& workspace, Jobs& jobs) {
       return take(request, workspace, jobs);
     });
   }
+  routes.get("/api/laws/hosts", Pace::at_once, [](const HttpRequest&) { return hosts_list(); });
   routes.get("/api/laws/fitted", Pace::at_once, [](const HttpRequest&) { return fitted_laws_list(); });
-  for (const auto& [path, view] : std::array<std::pair<const char*, View>, 3>{
-           {{"/api/result", result}, {"/api/law", law}, {"/api/residuals", residuals}}}) {
+  for (const auto& [path, view] :
+       std::array<std::pair<const char*, View>, 4>{{{"/api/result", result},
+                                                    {"/api/law", law},
+                                                    {"/api/law/exported", exported_law},
+                                                    {"/api/residuals", residuals}}}) {
     routes.get(path, Pace::slow,
                [&workspace, view = view](const HttpRequest& request) { return view(request, workspace); });
   }

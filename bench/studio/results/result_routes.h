@@ -1,15 +1,14 @@
 #pragma once
 
 #include "http/routes.h"
-#include "results/jobs.h"
+#include "jobs/jobs.h"
 #include "workspace/workspace.h"
 
 namespace kerf::bench {
 
-/// What the pages for fits, charts, choices and stability ask for: the jobs, orders for new ones, their
+/// What the pages for fits, charts, choices and stability ask for: orders for jobs, their
 /// results as they were written, laws, and what laws leave of recordings. All three must outlive the routes.
 ///
-///     GET  /api/jobs         POST /api/jobs/stop {job}
 ///     POST /api/fit          {recording, axis, models, folds}
 ///     POST /api/chart        {recording, axis, models}
 ///     POST /api/choose       {recording, axis, rate_hz?, most_segments?}

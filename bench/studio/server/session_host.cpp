@@ -44,7 +44,7 @@ std::string end_in_words(const SessionRunResult& result) {
     case SessionEnd::declined:
       return "consent was not given; nothing was felt";
     default:
-      return fmt::format("stopped after {} of {} trials; it can be gone on with", result.answered,
+      return fmt::format("stopped after {} of {} trials; it can be continued", result.answered,
                          result.at_most);
   }
 }

@@ -7,18 +7,12 @@ namespace {
 
 using Pace = Routes::Pace;
 
-nlohmann::ordered_json as_json(const SessionProgress& progress) {
-  return {{"running", progress.running},
-          {"name", progress.name},
-          {"subject_url", progress.subject_url},
-          {"answered", progress.answered},
-          {"at_most", progress.at_most},
-          {"adaptive", progress.adaptive},
-          {"stage", progress.stage},
-          {"ended", progress.ended},
-          {"warnings", progress.warnings},
-          {"quality", progress.quality},
-          {"notes", to_json(progress.notes)}};
+nlohmann::ordered_json as_json(const SessionProgress& progress, bool has_key_file) {
+  return {
+      {"running", progress.running},   {"name", progress.name},       {"subject_url", progress.subject_url},
+      {"answered", progress.answered}, {"at_most", progress.at_most}, {"adaptive", progress.adaptive},
+      {"stage", progress.stage},       {"ended", progress.ended},     {"warnings", progress.warnings},
+      {"has_key_file", has_key_file},  {"quality", progress.quality}, {"notes", to_json(progress.notes)}};
 }
 
 /// {"apparatus": {"headphones": true}}
@@ -36,7 +30,9 @@ std::vector<std::string> confirmations_in_request(const nlohmann::json& json) {
 
 void add_session_routes(Routes& routes, Workspace& workspace, SessionHost& host, const SessionHooks& hooks) {
   routes.get("/api/session", Pace::at_once,
-             [&host](const HttpRequest&) { return json_response(as_json(host.progress())); });
+             [&host, has_key_file = !hooks.key_file.empty()](const HttpRequest&) {
+               return json_response(as_json(host.progress(), has_key_file));
+             });
   routes.post("/api/session/start", Pace::action, [&host, &workspace, hooks](const HttpRequest& request) {
     const nlohmann::json json = json_in(request);
     const WorkspaceEntry entry = workspace.find(text_in(json, "session"), FileKind::session);
@@ -49,7 +45,7 @@ void add_session_routes(Routes& routes, Workspace& workspace, SessionHost& host,
                 .check = flag_in(json, "check", true),
                 .apparatus = confirmations_in_request(json)},
                hooks.prepare);
-    return json_response(as_json(host.progress()));
+    return json_response(as_json(host.progress(), !hooks.key_file.empty()));
   });
   // The order of the requests is that of the files: each is opened, and its traces are read.
   routes.post("/api/session/quality", Pace::slow, [&host, &workspace, hooks](const HttpRequest& request) {

@@ -3,22 +3,28 @@
 #include <optional>
 #include <string_view>
 
+#include "cycles/cycle_routes.h"
 #include "editor/editor_routes.h"
 #include "http/http_server.h"
 #include "http/routes.h"
+#include "intake/intake_routes.h"
+#include "jobs/job_routes.h"
+#include "jobs/jobs.h"
 #include "laws/law_file.h"
 #include "live/live_loop.h"
 #include "live/live_routes.h"
 #include "pages/access_control.h"
-#include "results/jobs.h"
 #include "results/result_routes.h"
 #include "scene/scene.h"
 #include "server/session_host.h"
 #include "server/session_routes.h"
 #include "server/studio_page.h"
 #include "studies/study_routes.h"
+#include "sweeps/sweep_routes.h"
+#include "verbs/verb_routes.h"
 #include "views/recording_routes.h"
 #include "views/recording_views.h"
+#include "workspace/file_routes.h"
 #include "workspace/page_uri.h"
 #include "workspace/workspace.h"
 #include "workspace/workspace_routes.h"
@@ -28,6 +34,11 @@ namespace {
 
 constexpr std::size_t max_body = 1 << 20;
 constexpr std::string_view subject_folder = "/subject";
+
+/// Of a job, which works in another folder.
+std::filesystem::path absolute_or_none(const std::filesystem::path& file) {
+  return file.empty() ? file : std::filesystem::absolute(file);
+}
 
 }  // namespace
 
@@ -40,16 +51,27 @@ class Studio::State {
         access_(server_.hosts()),
         sessions_(
             server_.hosts(), [this] { server_.wake(); },
-            [this](const std::string& fault) { loop_.tell_fault(fault); }) {
+            [this](const std::string& fault) { loop_.tell_fault(fault); }),
+        jobs_(state_folder_of(workspace_.folder()) / "jobs") {
     routes_.on_ready([this] { server_.wake(); });
     loop_.on_rows([this] { server_.wake(); });
     add_workspace_routes(routes_, workspace_, options.device_uri);
+    add_file_routes(routes_, workspace_);
     add_live_routes(routes_, loop_, live_hooks());
     add_recording_routes(routes_, views_,
                          [this](const std::string& id) { return path_of(id, FileKind::recording); });
+    add_cycle_routes(routes_, workspace_, views_);
+    add_intake_routes(routes_, workspace_, jobs_, std::filesystem::read_symlink("/proc/self/exe"));
     add_editor_routes(routes_, workspace_, [this](const LawFile& law) { render(law); });
     add_result_routes(routes_, workspace_, jobs_);
+    add_job_routes(routes_, jobs_);
+    add_verb_routes(routes_, workspace_, jobs_,
+                    {.program = options.program,
+                     .forms = options.verbs,
+                     .key_file = absolute_or_none(options.key_file),
+                     .check = options.check_words});
     add_study_routes(routes_, workspace_);
+    add_sweep_routes(routes_, workspace_, options.swept);
     add_session_routes(routes_, workspace_, sessions_,
                        {.key_file = options.key_file,
                         .uri_of = [this](const std::string& uri) { return uri_of(uri); },

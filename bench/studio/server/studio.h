@@ -2,8 +2,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
+#include <vector>
+
+#include "verbs/sweep_verb.h"
+#include "verbs/verb_form.h"
 
 namespace kerf::bench {
 
@@ -13,6 +18,11 @@ struct StudioOptions {
   std::string address = "127.0.0.1";        ///< to listen on
   std::uint16_t port = 0;                   ///< 0: any that is free
   std::filesystem::path key_file;           ///< for sessions that were sealed with one; empty: none
+  std::filesystem::path program;            ///< whose verbs the page may run; empty: none
+  std::vector<VerbForm> verbs = {};         ///< these
+  /// Says what is wrong with a command line of the program; throws std::invalid_argument.
+  std::function<void(const std::vector<std::string>&)> check_words = [](const std::vector<std::string>&) {};
+  SweepVerbs swept = sweep_verbs();  ///< verbs that sweeps may be of
 };
 
 /// A workspace as a page in a browser of this machine: server, running loop, recordings, jobs and sessions.

@@ -21,6 +21,7 @@ using schema::Column;
 
 constexpr std::uint64_t max_rows_segmented = 5'000'000;
 constexpr std::size_t max_points = 600;
+constexpr std::size_t max_whole_points = 6000;
 
 bool is_measured(const schema::RecordingFile& file) { return file.width(Column::force_measured) > 0; }
 
@@ -62,6 +63,20 @@ void add_averages(const schema::Cycles& found, bool is_measured, AxisCycles& cyc
   }
 }
 
+ForceLoop loop_of(const schema::RecordingFile& file, std::size_t axis, const AxisCycles::Rows& rows,
+                  const models::Contact& contact, std::size_t most) {
+  const BlockedValues position = axis_values(file, Column::position, axis);
+  const BlockedValues force = axis_values(file, force_column(file), axis);
+  const std::array<ValueOfRow, 2> columns{[&](std::size_t at) { return position[rows.begin + at]; },
+                                          [&](std::size_t at) { return force[rows.begin + at]; }};
+  ForceLoop loop{.cycle = rows.cycle, .position = {}, .force = {}};
+  for (const std::size_t at : decimated_rows(rows.end - rows.begin, columns, most)) {
+    loop.position.push_back(columns[0](at));
+    loop.force.push_back(resisting(columns[1](at), is_measured(file), contact));
+  }
+  return loop;
+}
+
 }  // namespace
 
 AxisCycles axis_cycles(const schema::RecordingFile& file, std::size_t axis) {
@@ -87,6 +102,7 @@ AxisCycles axis_cycles(const schema::RecordingFile& file, std::size_t axis) {
       cycles.segmented_here = true;
     } catch (const std::invalid_argument& error) {
       cycles.why_none = error.what();
+      cycles.contact = contact_along(file, axis, found);
       return cycles;
     }
   }
@@ -101,20 +117,15 @@ std::vector<ForceLoop> force_loops(const schema::RecordingFile& file, std::size_
                                    const AxisCycles& cycles, std::size_t first, std::size_t count) {
   std::vector<ForceLoop> loops;
   if (first == 0 || first > cycles.cycles.size()) return loops;
-  const BlockedValues position = axis_values(file, Column::position, axis);
-  const BlockedValues force = axis_values(file, force_column(file), axis);
   const auto shown = std::span(cycles.cycles).subspan(first - 1);
-  for (const AxisCycles::Rows& rows : shown.first(std::min(count, shown.size()))) {
-    const std::array<ValueOfRow, 2> columns{[&](std::size_t at) { return position[rows.begin + at]; },
-                                            [&](std::size_t at) { return force[rows.begin + at]; }};
-    ForceLoop loop{.cycle = rows.cycle, .position = {}, .force = {}};
-    for (const std::size_t at : decimated_rows(rows.end - rows.begin, columns, max_points)) {
-      loop.position.push_back(columns[0](at));
-      loop.force.push_back(resisting(columns[1](at), is_measured(file), cycles.contact));
-    }
-    loops.push_back(std::move(loop));
-  }
+  for (const AxisCycles::Rows& rows : shown.first(std::min(count, shown.size())))
+    loops.push_back(loop_of(file, axis, rows, cycles.contact, max_points));
   return loops;
+}
+
+ForceLoop whole_loop(const schema::RecordingFile& file, std::size_t axis, const AxisCycles& cycles) {
+  if (!has_force(file) || file.rows() == 0 || file.rows() > max_rows_segmented) return {};
+  return loop_of(file, axis, {.cycle = 0, .begin = 0, .end = file.rows()}, cycles.contact, max_whole_points);
 }
 
 }  // namespace kerf::bench

@@ -44,4 +44,9 @@ struct ForceLoop {
                                                  const AxisCycles& cycles, std::size_t first,
                                                  std::size_t count);
 
+/// Force against position along all rows, to be drawn where there are no cycles: at most 6000 points, kept as
+/// those of a loop are. Empty without a force, and of more than 5 million rows.
+[[nodiscard]] ForceLoop whole_loop(const schema::RecordingFile& file, std::size_t axis,
+                                   const AxisCycles& cycles);
+
 }  // namespace kerf::bench

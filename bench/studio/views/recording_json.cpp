@@ -164,7 +164,17 @@ std::string loops_json(RecordingView& recording, std::size_t axis, std::size_t f
   append_json_numbers(text, cycles.grid);
   append_member(text, "closing", cycles.closing);
   append_member(text, "opening", cycles.opening);
-  return text + "}}";
+  text += '}';
+  if (cycles.cycles.empty()) {
+    const ForceLoop whole = whole_loop(recording.file(), axis, cycles);
+    if (!whole.position.empty()) {
+      text += ",\"whole\":{\"position\":";
+      append_json_numbers(text, whole.position);
+      append_member(text, "force", whole.force);
+      text += '}';
+    }
+  }
+  return text + '}';
 }
 
 }  // namespace kerf::bench

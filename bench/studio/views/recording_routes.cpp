@@ -1,10 +1,12 @@
 #include "views/recording_routes.h"
 
+#include <memory>
 #include <utility>
 
 #include <fmt/core.h>
 
 #include "views/recording_json.h"
+#include "views/thumbnail.h"
 
 namespace kerf::bench {
 namespace {
@@ -50,6 +52,10 @@ void add_recording_routes(Routes& routes, RecordingViews& views,
   routes.get("/api/recording/view", Routes::Pace::slow, [&views, file_of](const HttpRequest& request) {
     return stretch(request, *views.opened(file_of(request)));
   });
+  routes.get("/api/recording/thumbnail", Routes::Pace::slow,
+             [thumbnails = std::make_shared<Thumbnails>(), file_of](const HttpRequest& request) {
+               return json_text(thumbnails->of(file_of(request)));
+             });
   routes.get("/api/recording/inspection", Routes::Pace::slow, [&views, file_of](const HttpRequest& request) {
     return json_text(views.opened(file_of(request))->inspection());
   });

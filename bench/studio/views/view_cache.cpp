@@ -46,7 +46,7 @@ std::array<char, 40> fixed(std::string_view text) {
   return room;
 }
 
-std::string text_in(const std::array<char, 40>& room) {
+std::string text_of_room(const std::array<char, 40>& room) {
   return {room.begin(), std::find(room.begin(), room.end(), '\0')};
 }
 
@@ -95,7 +95,7 @@ std::optional<ViewCache::Part> ViewCache::find(const FileFacts& recording, std::
     }
     std::error_code ignored;  // the time of its last use, by which the oldest are found
     std::filesystem::last_write_time(file, std::filesystem::file_time_type::clock::now(), ignored);
-    return Part{.uuid = text_in(head.uuid),
+    return Part{.uuid = text_of_room(head.uuid),
                 .rows = head.rows,
                 .bytes = std::as_bytes(std::span(mapped->text())).subspan(sizeof head),
                 .owner = mapped};

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <optional>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include <kerf/schema/live_recording.h>
 #include <kerf/schema/session.h>
 #include <kerf/schema/unfinished.h>
 #include <kerf/schema/validate.h>
@@ -23,6 +26,7 @@ namespace fs = std::filesystem;
 constexpr int max_depth = 4;
 constexpr std::size_t max_files = 10'000;
 constexpr std::size_t longest_name = 80;
+constexpr std::size_t most_waited_for = 24;
 
 struct Ending {
   std::string_view text;
@@ -34,7 +38,8 @@ constexpr std::array endings{Ending{".law.toml", FileKind::law}, Ending{".suite.
 constexpr std::array whole_names{
     Ending{"fit.json", FileKind::fit},       Ending{"chart.json", FileKind::chart},
     Ending{"choose.json", FileKind::choice}, Ending{"stability.json", FileKind::stability},
-    Ending{"study.toml", FileKind::study},   Ending{"identify.json", FileKind::device}};
+    Ending{"study.toml", FileKind::study},   Ending{"identify.json", FileKind::device},
+    Ending{"sweep.h5", FileKind::sweep}};
 
 /// By its name; a file of HDF5 is taken for a recording until it was looked into.
 std::optional<FileKind> kind_of(const std::string& name) {
@@ -62,9 +67,9 @@ bool is_name(std::string_view name) {
 }  // namespace
 
 std::string_view name_of(FileKind kind) noexcept {
-  constexpr std::array<std::string_view, 12> names{"recording", "law",      "session",   "fit",
-                                                   "chart",     "choice",   "stability", "suite",
-                                                   "scene",     "protocol", "study",     "device"};
+  constexpr std::array<std::string_view, 13> names{"recording", "law",       "session", "fit",   "chart",
+                                                   "choice",    "stability", "suite",   "scene", "protocol",
+                                                   "study",     "device",    "sweep"};
   return names[static_cast<std::size_t>(kind)];
 }
 
@@ -76,30 +81,10 @@ Workspace::Workspace(const fs::path& folder) {
         fmt::format("{}: no such folder; make it first, or name another", folder.string()));
 }
 
-std::map<std::string, WorkspaceEntry> Workspace::known_files() const {
-  const std::lock_guard lock(mutex_);
-  return found_;
-}
-
-bool Workspace::look_into(WorkspaceEntry& entry, const std::map<std::string, WorkspaceEntry>& known) {
-  if (!entry.name.ends_with(".h5")) return true;
-  const auto before = known.find(entry.id);
-  if (before != known.end() && before->second.bytes == entry.bytes &&
-      before->second.modified == entry.modified) {
-    entry.kind = before->second.kind;
-    return true;
-  }
-  const std::string schema = schema::schema_of(entry.path);
-  if (schema == schema::session_schema_name) entry.kind = FileKind::session;
-  return schema == schema::session_schema_name || schema == schema::schema_name;
-}
-
-std::vector<WorkspaceEntry> Workspace::scan() {
-  std::map<std::string, WorkspaceEntry> found;
+std::vector<WorkspaceEntry> Workspace::list() const {
   std::vector<WorkspaceEntry> all;
   std::error_code error;
   fs::recursive_directory_iterator at(folder_, fs::directory_options::skip_permission_denied, error);
-  const auto known = known_files();
   for (; !error && at != fs::recursive_directory_iterator() && all.size() < max_files; at.increment(error)) {
     const bool is_hidden =
         at->path().filename().string().starts_with('.') || schema::is_unfinished(at->path());
@@ -113,29 +98,104 @@ std::vector<WorkspaceEntry> Workspace::scan() {
                          .bytes = at->file_size(error),
                          .modified = at->last_write_time(error)};
     entry.id = id_of_name(entry.name);
+    entry.is_looked_into = entry.kind != FileKind::recording;
     error.clear();  // a file that has just gone
-    if (!look_into(entry, known)) continue;
-    found.emplace(entry.id, entry);
     all.push_back(std::move(entry));
   }
   std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
+  return all;
+}
+
+const Workspace::Looked* Workspace::known(const WorkspaceEntry& entry) const {
+  const auto before = looked_.find(entry.id);
+  const bool is_it = before != looked_.end() && before->second.bytes == entry.bytes &&
+                     before->second.modified == entry.modified;
+  return is_it ? &before->second : nullptr;
+}
+
+void Workspace::look_into(const WorkspaceEntry& entry) {
+  Looked looked{
+      .bytes = entry.bytes, .modified = entry.modified, .kind = std::nullopt, .seconds = std::nullopt};
+  try {
+    looked.seconds = schema::read_tail(entry.path).last.time_s;
+    looked.kind = FileKind::recording;
+  } catch (const std::exception&) {  // a damaged one says why when it is opened
+    const std::string schema = schema::schema_of(entry.path);
+    if (schema == schema::session_schema_name) looked.kind = FileKind::session;
+    if (schema == schema::schema_name || !entry.name.ends_with(".h5")) looked.kind = FileKind::recording;
+  }
   const std::lock_guard lock(mutex_);
-  found_ = std::move(found);
+  looked_[entry.id] = looked;
+}
+
+void Workspace::look_into_all(std::vector<WorkspaceEntry> entries) {
+  if (entries.size() <= most_waited_for) {
+    for (const WorkspaceEntry& entry : entries) look_into(entry);
+    return;
+  }
+  std::reverse(entries.begin(), entries.end());
+  const std::lock_guard lock(mutex_);
+  to_look_into_ = std::move(entries);
+  if (is_looking_) return;
+  is_looking_ = true;
+  looker_ = std::jthread([this](const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      std::unique_lock own(mutex_);
+      if (to_look_into_.empty()) {
+        is_looking_ = false;
+        return;
+      }
+      const WorkspaceEntry entry = std::move(to_look_into_.back());
+      to_look_into_.pop_back();
+      own.unlock();
+      look_into(entry);
+    }
+  });
+}
+
+bool Workspace::take_what_is_known(WorkspaceEntry& entry) const {
+  if (entry.is_looked_into) return true;
+  const Looked* const looked = known(entry);
+  if (looked == nullptr) return true;
+  entry.is_looked_into = true;
+  entry.kind = looked->kind.value_or(entry.kind);
+  entry.seconds = looked->seconds;
+  return looked->kind.has_value();
+}
+
+std::vector<WorkspaceEntry> Workspace::scan() {
+  std::vector<WorkspaceEntry> all = list();
+  std::vector<WorkspaceEntry> unknown;
+  {
+    const std::lock_guard lock(mutex_);
+    std::copy_if(all.begin(), all.end(), std::back_inserter(unknown),
+                 [this](const WorkspaceEntry& it) { return !it.is_looked_into && known(it) == nullptr; });
+  }
+  look_into_all(std::move(unknown));
+  const std::lock_guard lock(mutex_);
+  std::erase_if(all, [this](WorkspaceEntry& it) { return !take_what_is_known(it); });
+  found_.clear();
+  for (const WorkspaceEntry& it : all) found_.emplace(it.id, it);
   return all;
 }
 
 WorkspaceEntry Workspace::find(const std::string& id, FileKind kind) {
-  const auto known = [&]() -> std::optional<WorkspaceEntry> {
+  const auto named = [&]() -> std::optional<WorkspaceEntry> {
     const std::lock_guard lock(mutex_);
     const auto found = found_.find(id);
-    if (found == found_.end() || found->second.kind != kind) return std::nullopt;
-    return found->second;
+    return found == found_.end() ? std::nullopt : std::optional(found->second);
   };
   std::error_code error;
   for (const bool anew : {false, true}) {
     if (anew) (void)scan();
-    const auto entry = known();
-    if (entry && fs::is_regular_file(fs::symlink_status(entry->path, error))) return *entry;
+    auto entry = named();
+    if (!entry || !fs::is_regular_file(fs::symlink_status(entry->path, error))) continue;
+    if (!entry->is_looked_into) {
+      look_into(*entry);
+      const std::lock_guard lock(mutex_);
+      if (!take_what_is_known(*entry)) continue;
+    }
+    if (entry->kind == kind) return *entry;
   }
   throw RequestError(404, fmt::format("there is no such {} in this folder any more", name_of(kind)));
 }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <vector>
 
 namespace kerf::bench {
@@ -23,7 +24,8 @@ enum class FileKind : std::uint8_t {
   scene,      ///< .scene.toml
   protocol,   ///< .protocol.toml
   study,      ///< study.toml
-  device      ///< identify.json
+  device,     ///< identify.json
+  sweep       ///< sweep.h5 that kerf sweep merge wrote
 };
 [[nodiscard]] std::string_view name_of(FileKind kind) noexcept;
 
@@ -35,6 +37,8 @@ struct WorkspaceEntry {
   std::filesystem::path path;
   std::uintmax_t bytes = 0;
   std::filesystem::file_time_type modified;
+  bool is_looked_into = true;     ///< false: taken for a recording by its name alone, so far
+  std::optional<double> seconds;  ///< of a recording that was looked into and can be read
 };
 
 /// The folder that a studio works in: what is in it, four folders deep, hidden ones and symbolic links left
@@ -48,7 +52,9 @@ class Workspace {
   explicit Workspace(const std::filesystem::path& folder);
 
   [[nodiscard]] const std::filesystem::path& folder() const noexcept { return folder_; }
-  /// Looks again; in order of their names. Up to 10,000 files.
+  /// Looks again; in order of their names. Up to 10,000 files. To look into a file of HDF5 takes
+  /// milliseconds, since a process of its own reads it: up to 24 new ones are waited for, more are looked
+  /// into by a thread after this has returned.
   [[nodiscard]] std::vector<WorkspaceEntry> scan();
   /// The file of an id. @throws RequestError 404: none has it, or it is of another kind or gone.
   [[nodiscard]] WorkspaceEntry find(const std::string& id, FileKind kind);
@@ -64,13 +70,29 @@ class Workspace {
   [[nodiscard]] std::string id_of(const std::filesystem::path& file) const;
 
  private:
-  [[nodiscard]] std::map<std::string, WorkspaceEntry> known_files() const;
-  /// Whether a file of HDF5 is one of ours, and which; what has not changed is not opened again.
-  static bool look_into(WorkspaceEntry& entry, const std::map<std::string, WorkspaceEntry>& known);
+  /// What a file was when it was looked into. Nothing within: it is none of ours.
+  struct Looked {
+    std::uintmax_t bytes = 0;
+    std::filesystem::file_time_type modified;
+    std::optional<FileKind> kind;
+    std::optional<double> seconds;
+  };
+
+  [[nodiscard]] std::vector<WorkspaceEntry> list() const;
+  /// What is known of a file that has not changed since.
+  [[nodiscard]] const Looked* known(const WorkspaceEntry& entry) const;
+  void look_into(const WorkspaceEntry& entry);
+  void look_into_all(std::vector<WorkspaceEntry> entries);
+  /// False where it is none of ours.
+  [[nodiscard]] bool take_what_is_known(WorkspaceEntry& entry) const;
 
   std::filesystem::path folder_;
-  mutable std::mutex mutex_;
+  mutable std::mutex mutex_;                     ///< of all below
   std::map<std::string, WorkspaceEntry> found_;  ///< by id
+  std::map<std::string, Looked> looked_;         ///< by id
+  std::vector<WorkspaceEntry> to_look_into_;     ///< the next one last
+  bool is_looking_ = false;                      ///< the thread is at work
+  std::jthread looker_;                          ///< last: it uses the rest
 };
 
 }  // namespace kerf::bench

@@ -1,14 +1,10 @@
 #include "workspace/workspace_routes.h"
 
 #include <chrono>
-#include <cstdint>
-#include <map>
-#include <memory>
-#include <optional>
+#include <cstddef>
+#include <string_view>
 
 #include <fmt/chrono.h>
-
-#include <kerf/schema/live_recording.h>
 
 #include "laws/law_file.h"
 #include "laws/law_toml.h"
@@ -27,37 +23,13 @@ std::string iso_8601(std::filesystem::file_time_type time) {
                          std::chrono::time_point_cast<std::chrono::system_clock::duration>(on_the_wall))));
 }
 
-/// How long recordings are; a file that has not changed is not opened again. For one thread.
-class RecordingLengths {
- public:
-  /// Nothing where the file cannot be read: it is said when it is opened.
-  [[nodiscard]] std::optional<double> seconds(const WorkspaceEntry& entry) {
-    Known& known = known_[entry.id];
-    if (known.bytes == entry.bytes && known.modified == entry.modified) return known.seconds;
-    known = {.bytes = entry.bytes, .modified = entry.modified, .seconds = std::nullopt};
-    try {
-      known.seconds = schema::read_tail(entry.path).last.time_s;
-    } catch (const std::exception&) {
-    }
-    return known.seconds;
-  }
-
- private:
-  struct Known {
-    std::uintmax_t bytes = 0;
-    std::filesystem::file_time_type modified;
-    std::optional<double> seconds;
-  };
-  std::map<std::string, Known> known_;
-};
-
-nlohmann::ordered_json recording_entry(const WorkspaceEntry& entry, RecordingLengths& lengths) {
+nlohmann::ordered_json recording_entry(const WorkspaceEntry& entry) {
   nlohmann::ordered_json json{{"id", entry.id},
                               {"name", entry.name},
                               {"bytes", entry.bytes},
                               {"modified", iso_8601(entry.modified)},
                               {"partial", entry.name.ends_with(".partial")}};
-  if (const auto seconds = lengths.seconds(entry)) json["seconds"] = *seconds;
+  if (entry.seconds) json["seconds"] = *entry.seconds;
   return json;
 }
 
@@ -109,36 +81,49 @@ nlohmann::ordered_json session_entry(const WorkspaceEntry& entry) {
   return json;
 }
 
+nlohmann::ordered_json workspace_json(Workspace& workspace, const std::string& device) {
+  nlohmann::ordered_json json{{"folder", workspace.folder().filename().string()},
+                              {"version", software()},
+                              {"device", device},
+                              {"recordings", nlohmann::ordered_json::array()},
+                              {"laws", nlohmann::ordered_json::array()},
+                              {"sessions", nlohmann::ordered_json::array()},
+                              {"files", nlohmann::ordered_json::array()}};
+  std::size_t unlooked = 0;
+  for (const WorkspaceEntry& entry : workspace.scan()) {
+    if (!entry.is_looked_into) ++unlooked;
+    switch (entry.kind) {
+      case FileKind::recording:
+        json["recordings"].push_back(recording_entry(entry));
+        break;
+      case FileKind::law:
+        json["laws"].push_back(law_entry(entry));
+        break;
+      case FileKind::session:
+        json["sessions"].push_back(session_entry(entry));
+        break;
+      default:
+        json["files"].push_back({{"id", entry.id},
+                                 {"name", entry.name},
+                                 {"kind", name_of(entry.kind)},
+                                 {"modified", iso_8601(entry.modified)}});
+    }
+  }
+  json["unlooked"] = unlooked;
+  json["state"] = sha256_of(std::string_view(json.dump())).substr(0, 16);
+  return json;
+}
+
 }  // namespace
 
 void add_workspace_routes(Routes& routes, Workspace& workspace, const std::string& device) {
-  routes.get("/api/workspace", Routes::Pace::slow,
-             [&workspace, device, lengths = std::make_shared<RecordingLengths>()](const HttpRequest&) {
-               nlohmann::ordered_json json{{"folder", workspace.folder().filename().string()},
-                                           {"version", software()},
-                                           {"device", device},
-                                           {"recordings", nlohmann::ordered_json::array()},
-                                           {"laws", nlohmann::ordered_json::array()},
-                                           {"sessions", nlohmann::ordered_json::array()},
-                                           {"files", nlohmann::ordered_json::array()}};
-               for (const WorkspaceEntry& entry : workspace.scan()) {
-                 switch (entry.kind) {
-                   case FileKind::recording:
-                     json["recordings"].push_back(recording_entry(entry, *lengths));
-                     break;
-                   case FileKind::law:
-                     json["laws"].push_back(law_entry(entry));
-                     break;
-                   case FileKind::session:
-                     json["sessions"].push_back(session_entry(entry));
-                     break;
-                   default:
-                     json["files"].push_back(
-                         {{"id", entry.id}, {"name", entry.name}, {"kind", name_of(entry.kind)}});
-                 }
-               }
-               return json_response(json);
-             });
+  routes.get("/api/workspace", Routes::Pace::slow, [&workspace, device](const HttpRequest& request) {
+    const nlohmann::ordered_json json = workspace_json(workspace, device);
+    const auto unless = request.query.find("unless");
+    if (unless != request.query.end() && unless->second == json["state"])
+      return json_response({{"unchanged", true}});
+    return json_response(json);
+  });
 }
 
 }  // namespace kerf::bench

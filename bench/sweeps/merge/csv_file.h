@@ -5,12 +5,12 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
-#include <iterator>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <system_error>
 
+#include <fmt/compile.h>
 #include <fmt/format.h>
 
 namespace kerf::bench {
@@ -26,24 +26,27 @@ class CsvFile {
   void field(std::string_view text) {
     separate();
     if (text.find_first_of(",\"\n") == std::string_view::npos) {
-      line_ += text;
+      line_.append(text);
       return;
     }
-    line_ += '"';
-    for (const char c : text) line_.append(c == '"' ? 2 : 1, c);
-    line_ += '"';
+    line_.push_back('"');
+    for (const char c : text) {
+      if (c == '"') line_.push_back(c);
+      line_.push_back(c);
+    }
+    line_.push_back('"');
   }
   /// By the fewest digits that give the number back; nothing for NaN.
   void field(double value) {
     separate();
-    if (!std::isnan(value)) fmt::format_to(std::back_inserter(line_), "{}", value);
+    if (!std::isnan(value)) fmt::format_to(fmt::appender(line_), FMT_COMPILE("{}"), value);
   }
   void field(std::uint64_t value) {
     separate();
-    fmt::format_to(std::back_inserter(line_), "{}", value);
+    fmt::format_to(fmt::appender(line_), FMT_COMPILE("{}"), value);
   }
   void end_line() {
-    line_ += '\n';
+    line_.push_back('\n');
     begun_ = false;
     if (line_.size() < 65536) return;
     write();
@@ -59,7 +62,7 @@ class CsvFile {
   };
 
   void separate() {
-    if (begun_) line_ += ',';
+    if (begun_) line_.push_back(',');
     begun_ = true;
   }
   void write() {
@@ -72,7 +75,7 @@ class CsvFile {
 
   std::filesystem::path file_;
   std::unique_ptr<std::FILE, Close> stream_;
-  std::string line_;
+  fmt::memory_buffer line_;  // formats without a copy
   bool begun_ = false;
 };
 

@@ -145,7 +145,7 @@ void GatheredCells::note_difference(std::uint64_t cell, const ComputedCell& one,
 }
 
 CellRecord GatheredCells::record_at(const RecordPlace& place) const {
-  return first_frame(files_[place.file].text().substr(place.at))->record;
+  return record_of_frame(files_[place.file].text().substr(place.at));
 }
 
 CellRecord GatheredCells::record(std::uint64_t cell) const { return record_at(places_.at(cell)); }

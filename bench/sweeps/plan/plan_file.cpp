@@ -7,8 +7,7 @@
 
 #include "files/json_file.h"
 #include "files/named_file.h"
-#include "recordings/provenance.h"
-#include "verbs/sweep_verb.h"
+#include "plan/planned_file.h"
 
 namespace kerf::bench {
 namespace {
@@ -81,16 +80,8 @@ SweepBlock block_from(const json& given, const SweepPlan& plan) {
   return block;
 }
 
-SweepPlan plan_from(const json& all, const fs::path& folder) {
-  SweepPlan plan;
-  plan.folder = folder;
-  const json& what = all.at("plan");
-  plan.verb = &sweep_verb_called(what.at("verb").get<std::string>());
-  plan.inputs = plan.verb->inputs();
-  for (const auto& [name, file] : what.at("files").items())
-    plan.files[name] = {.bytes = file.at("bytes").get<std::uintmax_t>(),
-                        .sha256 = file.at("sha256").get<std::string>()};
-  for (const json& given : what.at("cells")) plan.blocks.push_back(block_from(given, plan));
+SweepPlan plan_from(const json& all, const fs::path& folder, SweepVerbs verbs) {
+  SweepPlan plan = plan_from_json(all.at("plan"), folder, verbs);
   plan.shards = all.at("shards").get<std::uint64_t>();
   plan.limits = {.seconds = all.at("limits").at("seconds").get<double>(),
                  .megabytes = all.at("limits").at("megabytes").get<std::size_t>()};
@@ -101,6 +92,18 @@ SweepPlan plan_from(const json& all, const fs::path& folder) {
 }
 
 }  // namespace
+
+SweepPlan plan_from_json(const json& what, const fs::path& folder, SweepVerbs verbs) {
+  SweepPlan plan;
+  plan.folder = folder;
+  plan.verb = &sweep_verb_called(what.at("verb").get<std::string>(), verbs);
+  plan.inputs = plan.verb->inputs();
+  for (const auto& [name, file] : what.at("files").items())
+    plan.files[name] = {.bytes = file.at("bytes").get<std::uintmax_t>(),
+                        .sha256 = file.at("sha256").get<std::string>()};
+  for (const json& given : what.at("cells")) plan.blocks.push_back(block_from(given, plan));
+  return plan;
+}
 
 fs::path PlanFile::shards_folder() const {
   std::string name = file.filename().string();
@@ -121,7 +124,7 @@ void write_plan(const fs::path& file, const SweepPlan& plan, const std::optional
   write_json_file(file, all, schema::existing_if(replace));
 }
 
-PlanFile read_plan(const fs::path& file) {
+PlanFile read_plan(const fs::path& file, SweepVerbs verbs) {
   const std::string text = read_named_file(file, LargestInput::table);
   const auto refuse = [&](const std::string& why) {
     throw std::invalid_argument(fmt::format("{}: {}; 'kerf sweep plan' writes plans", file.string(), why));
@@ -137,7 +140,7 @@ PlanFile read_plan(const fs::path& file) {
   PlanFile read;
   try {
     read.file = fs::absolute(file).lexically_normal();
-    read.plan = plan_from(all, read.file.parent_path());
+    read.plan = plan_from(all, read.file.parent_path(), verbs);
     read.sha256 = read.plan.sha256();
   } catch (const json::exception&) {
     refuse("it lacks what a plan has");
@@ -167,10 +170,13 @@ void require_planned_files(const SweepPlan& plan, const ShardRange& range) {
   }
   for (const std::string& name : used) {
     const fs::path file = plan.folder / name;
-    const NamedFile named(file);
-    if (named.size() != plan.files.at(name).bytes || sha256_of(file) != plan.files.at(name).sha256)
-      throw std::invalid_argument(fmt::format(
-          "{}: it is not the file that was planned with; plan anew, or bring it back", file.string()));
+    const PlannedFile& planned = plan.files.at(name);
+    const SweepInput& input = plan.inputs.front();
+    const bool same_size = NamedFile(file).size() == planned.bytes;
+    if (same_size && planned_file(input, file).sha256 == planned.sha256) continue;
+    throw std::invalid_argument(fmt::format(
+        "{}: {} the file that was planned with; plan anew, or bring it back", file.string(),
+        input.counts_with == nullptr || !same_size ? "it is not" : "it, or one that it names, is not"));
   }
 }
 

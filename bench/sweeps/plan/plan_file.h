@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "plan/sweep_plan.h"
+#include "verbs/sweep_verb.h"
 
 namespace kerf::bench {
 
@@ -44,7 +45,12 @@ void write_plan(const std::filesystem::path& file, const SweepPlan& plan,
 
 /// @throws std::invalid_argument in one line: no plan, one of another version, or one that was changed after
 ///         it was written.
-[[nodiscard]] PlanFile read_plan(const std::filesystem::path& file);
+[[nodiscard]] PlanFile read_plan(const std::filesystem::path& file, SweepVerbs verbs = sweep_verbs());
+
+/// What SweepPlan::as_json() says of a plan, which a merged sweep keeps: no shards and no limits.
+/// @throws nlohmann::json::exception, std::invalid_argument for what it does not say.
+[[nodiscard]] SweepPlan plan_from_json(const nlohmann::ordered_json& what,
+                                       const std::filesystem::path& folder, SweepVerbs verbs);
 
 /// That the files of some cells are what they were when the sweep was planned: each is hashed once.
 /// @throws std::invalid_argument that names the first that is missing or another one.

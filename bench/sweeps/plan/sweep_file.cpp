@@ -9,8 +9,7 @@
 #include "files/named_file.h"
 #include "fits/batch.h"
 #include "laws/law_toml.h"
-#include "recordings/provenance.h"
-#include "verbs/sweep_verb.h"
+#include "plan/planned_file.h"
 
 namespace kerf::bench {
 namespace {
@@ -34,18 +33,16 @@ SweepValue value_of(const Place& place, const toml::node& node, const SweepInput
 }
 
 /// A file by the name that the plan has it under; a folder stands for all recordings in it.
-void add_files(const Place& place, const toml::node& node, const std::string& name, SweepPlan& plan,
-               std::vector<SweepValue>& values) {
+void add_files(const Place& place, const toml::node& node, const SweepInput& input, const std::string& name,
+               SweepPlan& plan, std::vector<SweepValue>& values) {
   std::vector<fs::path> found{plan.folder / name};
   try {
-    if (fs::is_directory(found.front())) found = recordings_in(found.front());
+    if (input.kind == SweepInput::Kind::recording && fs::is_directory(found.front()))
+      found = recordings_in(found.front());
     for (const fs::path& file : found) {
       const std::string known = file.lexically_relative(plan.folder).generic_string();
       values.emplace_back(known);
-      if (!plan.files.contains(known)) {
-        const NamedFile named(file);
-        plan.files[known] = {.bytes = named.size(), .sha256 = sha256_of(file)};
-      }
+      if (!plan.files.contains(known)) plan.files[known] = planned_file(input, file);
     }
   } catch (const std::invalid_argument& error) {
     place.refuse(node, "{}", error.what());
@@ -91,7 +88,7 @@ InputValues values_of(const Place& place, const toml::node& node, const SweepInp
   const auto add = [&](const toml::node& one) {
     const SweepValue value = value_of(place, one, input);
     if (input.is_file()) {
-      add_files(place, one, std::get<std::string>(value), plan, values);
+      add_files(place, one, input, std::get<std::string>(value), plan, values);
     } else {
       values.push_back(value);
     }
@@ -154,7 +151,7 @@ void read_limits(const Place& place, const toml::table& root, SweepLimits& limit
 
 }  // namespace
 
-SweepPlan read_sweep(const fs::path& file) {
+SweepPlan read_sweep(const fs::path& file, SweepVerbs verbs) {
   const toml::table root = parse_toml(read_named_file(file), file.string());
   const Place place(file.string());
   const toml::node* const version = root.get("version");
@@ -165,7 +162,7 @@ SweepPlan read_sweep(const fs::path& file) {
   const toml::node* const verb = root.get("verb");
   if (verb == nullptr) place.refuse(root, "a sweep needs 'verb', such as verb = \"fit\"");
   try {
-    plan.verb = &sweep_verb_called(place.text(root, "verb", ""));
+    plan.verb = &sweep_verb_called(place.text(root, "verb", ""), verbs);
   } catch (const std::invalid_argument& error) {
     place.refuse(*verb, "{}", error.what());
   }

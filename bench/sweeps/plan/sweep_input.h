@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <optional>
 #include <string>
@@ -29,6 +30,8 @@ struct SweepInput {
   std::vector<std::string> among{};      ///< texts that it may be; empty: any
   std::optional<SweepValue> standard{};  ///< where it is not given
   bool required = false;
+  /// Of a file: others whose content counts with its own; none: it stands for itself.
+  std::vector<std::filesystem::path> (*counts_with)(const std::filesystem::path& file) = nullptr;
 
   /// The content of what it names counts, and not the name.
   [[nodiscard]] bool is_file() const noexcept { return kind == Kind::file || kind == Kind::recording; }

@@ -178,6 +178,11 @@ std::optional<Frame> first_frame(std::string_view bytes) {
   }
 }
 
+CellRecord record_of_frame(std::string_view bytes) {
+  const auto length = Taking(bytes).take<std::uint32_t>();
+  return record_in(bytes.substr(head_of_frame, length));
+}
+
 bool may_become_frame(std::string_view bytes) {
   if (bytes.size() < head_of_frame) return true;
   const auto length = Taking(bytes).take<std::uint32_t>();

@@ -84,6 +84,8 @@ struct Frame {
 };
 /// None: it is not whole, or damaged.
 [[nodiscard]] std::optional<Frame> first_frame(std::string_view bytes);
+/// The record of a frame that was found whole before; its CRC is not looked at again.
+[[nodiscard]] CellRecord record_of_frame(std::string_view bytes);
 /// Whether more bytes may yet make it whole.
 [[nodiscard]] bool may_become_frame(std::string_view bytes);
 

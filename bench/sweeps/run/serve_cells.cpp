@@ -133,9 +133,9 @@ class Server {
 
 }  // namespace
 
-void serve_cells(const std::filesystem::path& plan, int connection) {
+void serve_cells(const std::filesystem::path& plan, int connection, SweepVerbs verbs) {
   (void)::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  const PlanFile file = read_plan(plan);
+  const PlanFile file = read_plan(plan, verbs);
   limit_memory(file.plan.limits.megabytes);
   Server(file, connection).run();
 }

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "verbs/sweep_verb.h"
+
 namespace kerf::bench {
 
 /// What a worker is told to compute: cells [begin, end).
@@ -17,6 +19,6 @@ struct CellOrder {
 /// started it.
 /// For trials, KERF_SWEEP_FAULT names cells that go wrong: "crash@17,hang@23,memory@42".
 /// @throws as read_plan(); std::system_error.
-void serve_cells(const std::filesystem::path& plan, int connection);
+void serve_cells(const std::filesystem::path& plan, int connection, SweepVerbs verbs = sweep_verbs());
 
 }  // namespace kerf::bench

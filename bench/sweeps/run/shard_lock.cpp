@@ -105,7 +105,8 @@ LockHolder ShardLock::holder_of(const fs::path& place) {
 
 ShardLock::ShardLock(const fs::path& place, const fs::path& guarded, Options options)
     : path_(path_of(place)), options_(std::move(options)), self_(this_process()) {
-  guard(guarded);
+  // Made only by who has the lock: who is refused leaves no empty file beside a shard that has just ended.
+  const bool guards = guard(guarded, Guarded::existing);
   while (!take()) {
     const std::string seen = text_of(path_);
     if (seen.empty()) continue;  // it went away meanwhile
@@ -118,20 +119,31 @@ ShardLock::ShardLock(const fs::path& place, const fs::path& guarded, Options opt
     remove_stale(seen);
     options_.tell(fmt::format("{}: removed, {} left it behind", path_.string(), holder.in_words()));
   }
+  try {
+    if (!guards) (void)guard(guarded, Guarded::made);
+  } catch (...) {
+    give_back();
+    throw;
+  }
   last_beat_ = std::chrono::steady_clock::now();
 }
 
-ShardLock::~ShardLock() {
+ShardLock::~ShardLock() { give_back(); }
+
+void ShardLock::give_back() const noexcept {
   if (is_ours()) (void)::unlink(path_.c_str());
 }
 
-void ShardLock::guard(const fs::path& guarded) {
+/// @returns false if it is not there, and is not to be made.
+bool ShardLock::guard(const fs::path& guarded, Guarded how) {
+  const int flags = O_RDWR | O_CLOEXEC | (how == Guarded::made ? O_CREAT : 0);
   for (;;) {
-    guard_ = processes::Descriptor(::open(guarded.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666));
+    guard_ = processes::Descriptor(::open(guarded.c_str(), flags, 0666));
+    if (guard_.number() < 0 && errno == ENOENT && how == Guarded::existing) return false;
     if (guard_.number() < 0) throw_of(guarded, "cannot be opened for writing");
     if (::flock(guard_.number(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-      refuse(LockHolder::from_text(text_of(path_)));
-    if (same_inode(guard_.number(), guarded)) return;  // else it was given its final name meanwhile
+      refuse(how == Guarded::made ? LockHolder{} : LockHolder::from_text(text_of(path_)));
+    if (same_inode(guard_.number(), guarded)) return true;  // else it was given its final name meanwhile
   }
 }
 
@@ -194,7 +206,7 @@ void ShardLock::refuse(const LockHolder& holder) const {
                                           holder.host.empty() ? "another process" : holder.in_words()));
 }
 
-bool ShardLock::is_ours() const { return file_.number() >= 0 && same_inode(file_.number(), path_); }
+bool ShardLock::is_ours() const noexcept { return file_.number() >= 0 && same_inode(file_.number(), path_); }
 
 void ShardLock::keep() {
   const auto now = std::chrono::steady_clock::now();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -56,12 +57,14 @@ class ShardLock {
   [[nodiscard]] static LockHolder holder_of(const std::filesystem::path& place);
 
  private:
-  void guard(const std::filesystem::path& guarded);
+  enum class Guarded : std::uint8_t { existing, made };
+  bool guard(const std::filesystem::path& guarded, Guarded how);
+  void give_back() const noexcept;
   [[nodiscard]] bool take();
   void wait_until_stale(const std::string& seen);
   void remove_stale(const std::string& seen) const;
   [[noreturn]] void refuse(const LockHolder& holder) const;
-  [[nodiscard]] bool is_ours() const;
+  [[nodiscard]] bool is_ours() const noexcept;
 
   std::filesystem::path path_;
   Options options_;

@@ -5,14 +5,15 @@
 #include <fmt/format.h>
 
 #include <kerf/fitting/fit.h>
-#include <kerf/psychophysics/random.h>
 
 #include "fits/fit_recording.h"
 #include "fits/fit_series.h"
 #include "laws/render.h"
 #include "recordings/axes.h"
 #include "recordings/whole_recording.h"
+#include "verbs/parameter_columns.h"
 #include "verbs/sweep_verb.h"
+#include "verbs/swept_recording.h"
 
 namespace kerf::bench {
 namespace {
@@ -21,7 +22,7 @@ std::vector<SweepInput> inputs_of_fits() {
   using enum SweepInput::Kind;
   std::vector<std::string> laws;
   for (const std::string_view law : fitting::fitted_laws()) laws.emplace_back(law);
-  return {
+  std::vector<SweepInput> inputs{
       {.name = "recording", .kind = recording, .what = "Recording to fit", .required = true},
       {.name = "axis", .kind = text, .what = "Axis", .standard = ""},
       {.name = "rows",
@@ -54,28 +55,14 @@ std::vector<SweepInput> inputs_of_fits() {
        .what = "Confidence of the intervals",
        .lower = 0.5,
        .upper = 0.9999,
-       .standard = 0.95},
-      {.name = "noise",
-       .what = "Standard deviation of white noise that is added to the force",
-       .unit = "N",
-       .lower = 0,
-       .standard = 0.0},
-      {.name = "seed", .kind = whole, .what = "Seed of that noise", .lower = 0, .standard = 1.0}};
-}
-
-void add_parameter(CellNumbers& numbers, const fitting::Estimate& estimate, const LawFile& file) {
-  const std::string& name = estimate.info.name;
-  const std::string unit = models::unit_of(estimate.info.quantity, file.force_unit, file.position_unit);
-  numbers.add(name, unit, estimate.value);
-  numbers.add(name + "_std_error", unit, estimate.std_error);
-  numbers.add(name + "_lower", unit, estimate.lower);
-  numbers.add(name + "_upper", unit, estimate.upper);
+       .standard = 0.95}};
+  for (SweepInput& input : noise_inputs()) inputs.push_back(std::move(input));
+  return inputs;
 }
 
 CellNumbers numbers_of(const RecordingFit& fit) {
   const fitting::FitResult& result = fit.laws.front().result;
-  const LawFile& file = fit.laws.front().file;
-  const std::string& force_unit = file.force_unit;
+  const std::string& force_unit = fit.laws.front().file.force_unit;
   CellNumbers numbers{.table = result.model, .columns = {}, .values = {}};
   numbers.add("converged", "1", result.converged ? 1.0 : 0.0);
   numbers.add("counted", "1", static_cast<double>(fit.recordings.front().counted));
@@ -92,16 +79,16 @@ CellNumbers numbers_of(const RecordingFit& fit) {
   numbers.add("effective_samples", "1", result.effective_samples);
   numbers.add("correlation_time", "samples", result.correlation_time);
   numbers.add("iterations", "1", result.iterations);
-  for (const fitting::Estimate& estimate : result.parameters) add_parameter(numbers, estimate, file);
+  add_parameters(numbers, fit.laws.front());
   return numbers;
 }
 
 class FitCells final : public CellWork {
  public:
-  explicit FitCells(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  explicit FitCells(const std::filesystem::path& folder) : recording_(folder, read_fitted_columns) {}
 
   CellNumbers compute(const SweepCell& cell) override {
-    const schema::Recording& recording = noisy(recording_called(cell.text("recording")), cell);
+    const schema::Recording& recording = recording_.of(cell);
     FitRecordingOptions options;
     options.models = {cell.text("law")};
     options.axis = find_axis(recording, cell.text("axis"));
@@ -122,29 +109,7 @@ class FitCells final : public CellWork {
   }
 
  private:
-  /// The recording that cells before this one had, or another one in its place.
-  const schema::Recording& recording_called(const std::string& name) {
-    if (name != name_) {
-      recording_ = read_fitted_columns(folder_ / name);
-      name_ = name;
-    }
-    return recording_;
-  }
-
-  const schema::Recording& noisy(const schema::Recording& recording, const SweepCell& cell) {
-    const double noise_n = cell.number("noise");
-    if (noise_n == 0.0) return recording;
-    noisy_ = recording;
-    psychophysics::Random random(static_cast<std::uint64_t>(cell.number("seed")));
-    auto& force = noisy_.force_measured.empty() ? noisy_.force_commanded : noisy_.force_measured;
-    for (double& value : force) value += noise_n * random.normal();
-    return noisy_;
-  }
-
-  std::filesystem::path folder_;
-  std::string name_;
-  schema::Recording recording_;
-  schema::Recording noisy_;
+  SweptRecording recording_;
 };
 
 }  // namespace

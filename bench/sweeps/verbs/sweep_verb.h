@@ -51,12 +51,17 @@ struct SweepVerb {
 };
 
 extern const SweepVerb sweep_of_checks;
+extern const SweepVerb sweep_of_choices;
 extern const SweepVerb sweep_of_fits;
 extern const SweepVerb sweep_of_identify;
+extern const SweepVerb sweep_of_regressions;
 extern const SweepVerb sweep_of_stability;
 
-[[nodiscard]] std::span<const SweepVerb* const> sweep_verbs();
+/// Verbs that plans may name.
+using SweepVerbs = std::span<const SweepVerb* const>;
+/// Those of this room. Who sees other rooms too hands in theirs beside them.
+[[nodiscard]] SweepVerbs sweep_verbs();
 /// @throws std::invalid_argument that lists them.
-[[nodiscard]] const SweepVerb& sweep_verb_called(std::string_view name);
+[[nodiscard]] const SweepVerb& sweep_verb_called(std::string_view name, SweepVerbs verbs);
 
 }  // namespace kerf::bench

@@ -7,15 +7,16 @@
 
 namespace kerf::bench {
 
-std::span<const SweepVerb* const> sweep_verbs() {
-  static constexpr std::array<const SweepVerb*, 4> all{&sweep_of_fits, &sweep_of_stability,
-                                                       &sweep_of_identify, &sweep_of_checks};
+SweepVerbs sweep_verbs() {
+  static constexpr std::array<const SweepVerb*, 6> all{&sweep_of_fits,     &sweep_of_stability,
+                                                       &sweep_of_identify, &sweep_of_checks,
+                                                       &sweep_of_choices,  &sweep_of_regressions};
   return all;
 }
 
-const SweepVerb& sweep_verb_called(std::string_view name) {
+const SweepVerb& sweep_verb_called(std::string_view name, SweepVerbs verbs) {
   std::string known;
-  for (const SweepVerb* const verb : sweep_verbs()) {
+  for (const SweepVerb* const verb : verbs) {
     if (verb->name == name) return *verb;
     known += fmt::format("{}{}", known.empty() ? "" : ", ", verb->name);
   }

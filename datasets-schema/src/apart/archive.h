@@ -10,6 +10,8 @@
 #include <variant>
 #include <vector>
 
+#include <kerf/schema/sweep_tables_file.h>
+
 #include "in_process.h"
 
 /// The schema's values as bytes, from one process of a program to another.
@@ -58,6 +60,12 @@ auto fields(Is<SessionEntry> auto& x) { return std::tie(x.kind, x.time, x.text, 
 auto fields(Is<Session> auto& x) {
   return std::tie(x.uuid, x.created, x.software, x.subject, x.number, x.subjects, x.protocol, x.laws, x.key,
                   x.entries);
+}
+auto fields(Is<SweepColumn> auto& x) { return std::tie(x.name, x.unit, x.type); }
+auto fields(Is<SweepTable> auto& x) { return std::tie(x.name, x.rows, x.columns); }
+auto fields(Is<SweepTablesFacts::Texts> auto& x) { return std::tie(x.input, x.texts); }
+auto fields(Is<SweepTablesFacts> auto& x) {
+  return std::tie(x.plan_sha256, x.plan, x.software, x.cells, x.tables, x.texts);
 }
 auto fields(Is<Violation> auto& x) { return std::tie(x.where, x.found, x.expected); }
 

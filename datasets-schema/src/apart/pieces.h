@@ -24,7 +24,9 @@ enum class Ask : std::uint32_t {
   session_facts,
   sealed,  ///< of the entry `first`
   schema,
-  violations
+  violations,
+  sweep_tables,  ///< SweepTablesFacts; it stays open
+  sweep_column   ///< all rows of column `first` of table `dataset`, as float64
 };
 
 struct Request {

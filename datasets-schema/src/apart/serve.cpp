@@ -5,11 +5,13 @@
 #include <optional>
 #include <string_view>
 #include <system_error>
+#include <vector>
 
 #include <sys/socket.h>
 
 #include "apart/archive.h"
 #include "in_process.h"
+#include "open_sweep_tables.h"
 #include "validate/inspect.h"
 
 namespace kerf::schema::apart {
@@ -73,6 +75,10 @@ class Server {
         return put(in_process::schema_of(file_));
       case Ask::violations:
         return put(in_process::validate(file_));
+      case Ask::sweep_tables:
+        return put(sweep_.emplace(file_).facts());
+      case Ask::sweep_column:
+        return put_column(request.dataset, request.first);
     }
   }
 
@@ -107,10 +113,22 @@ class Server {
     }
   }
 
+  void put_column(std::size_t table, std::size_t column) {
+    const std::uint64_t rows = sweep_.value().facts().tables.at(table).rows;
+    constexpr std::uint64_t at_once = half_bytes / sizeof(double);
+    std::vector<double> values;
+    for (std::uint64_t first = 0; first < rows; first += values.size()) {
+      values.resize(std::min(at_once, rows - first));
+      sweep_->read(table, column, first, values);
+      sink_.put(values.data(), values.size() * sizeof(double));
+    }
+  }
+
   std::filesystem::path file_;
   int socket_;
   PieceSink sink_;
   std::optional<in_process::OpenRecording> recording_;
+  std::optional<in_process::OpenSweepTables> sweep_;
 };
 
 }  // namespace

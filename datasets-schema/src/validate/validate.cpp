@@ -242,6 +242,8 @@ std::vector<Violation> in_process::validate(const std::filesystem::path& file) {
       validate_session(file, violations);
     } else if (schema == regression_schema_name) {
       validate_regression(file, violations);
+    } else if (schema == sweep_tables_name) {
+      validate_sweep_tables(file, violations);
     } else {
       validate_recording(file, violations);
     }

@@ -5,6 +5,7 @@
 
 #include <kerf/schema/regression.h>
 #include <kerf/schema/session.h>
+#include <kerf/schema/sweep_tables.h>
 #include <kerf/schema/validate.h>
 
 #include "validate/tree_check.h"
@@ -15,5 +16,6 @@ namespace kerf::schema {
 /// @throws h5::Error (damage), as validate() otherwise.
 void validate_session(const std::filesystem::path& file, std::vector<Violation>& violations);
 void validate_regression(const std::filesystem::path& file, std::vector<Violation>& violations);
+void validate_sweep_tables(const std::filesystem::path& file, std::vector<Violation>& violations);
 
 }  // namespace kerf::schema

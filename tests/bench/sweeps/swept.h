@@ -25,6 +25,25 @@ inline std::string walls(const std::string& more = "") {
          "stiffness = { from = 100, to = 100000, count = 10, scale = \"logarithmic\" }\n";
 }
 
+/// The inputs of a verb as docs/sweeps.md lists them.
+inline std::vector<std::string> documented_inputs(const std::string& verb) {
+  const std::string page = read_text(KERF_SOURCE_DIR "/docs/sweeps.md");
+  const std::string head = "\n| `" + verb + "` | ";
+  std::vector<std::string> names;
+  auto at = page.find(head);
+  if (at == std::string::npos) return names;
+  at += head.size();
+  std::string listed = page.substr(at, page.find(" | ", at) - at);
+  for (auto open = listed.find('('); open != std::string::npos; open = listed.find('('))
+    listed.erase(open, listed.find(')', open) + 1 - open);
+  for (auto tick = listed.find('`'); tick != std::string::npos;) {
+    const auto end = listed.find('`', tick + 1);
+    names.push_back(listed.substr(tick + 1, end - tick - 1));
+    tick = listed.find('`', end + 1);
+  }
+  return names;
+}
+
 /// A folder with a sweep in it, w.toml, and what is run of it.
 class SweepFolder : public testing::Test {
  protected:

@@ -14,10 +14,12 @@
 #include <kerf/schema/regression.h>
 #include <kerf/schema/repair.h>
 #include <kerf/schema/session.h>
+#include <kerf/schema/sweep_tables_file.h>
 #include <kerf/schema/validate.h>
 
 #include "fuzz/target.h"
 #include "in_process.h"
+#include "open_sweep_tables.h"
 
 namespace kerf::fuzz {
 namespace {
@@ -162,6 +164,9 @@ void check_readers(const std::filesystem::path& file) {
   } else if (schema == schema::session_schema_name) {
     check_session(file, is_valid);
     promise(!refusal([&] { in_process::OpenRecording(file, true); }).empty(), "a session is no recording");
+  } else if (schema == schema::sweep_tables_name) {
+    const std::string why = refusal([&] { const in_process::OpenSweepTables opened(file); });
+    promise(why.empty() || !is_valid, "valid tables of a sweep are read, not refused: " + why);
   } else {
     check_recording(file, is_valid);
     (void)refusal([&] { (void)in_process::read_tail(file); });
@@ -177,7 +182,8 @@ void check_readers_apart(const std::filesystem::path& file) {
   const auto reads = [](const auto& read) { return refusal(read).empty() ? 1 : 0; };
   const int taken = reads([&] { (void)schema::read_recording(file); }) +
                     reads([&] { (void)schema::read_regression(file); }) +
-                    reads([&] { (void)schema::read_session(file); });
+                    reads([&] { (void)schema::read_session(file); }) +
+                    reads([&] { const schema::SweepTablesFile opened(file); });
   promise(taken <= 1, "a file is of one schema");
   promise(taken == 1 || !is_valid, "a valid file is read");
   (void)refusal([&] { (void)schema::read_tail(file); });

@@ -9,8 +9,10 @@
 #include <kerf/schema/recording.h>
 #include <kerf/schema/regression.h>
 #include <kerf/schema/session.h>
+#include <kerf/schema/sweep_tables.h>
 
 #include "datasets-schema/recording/sample_recording.h"
+#include "datasets-schema/sample_sweep.h"
 #include "files/whole_file.h"
 #include "fuzz/scratch_folder.h"
 
@@ -19,7 +21,7 @@ namespace kerf::fuzz {
 /// One sound file of each schema, as Kerf writes it: what is then put out of order.
 class SeedFiles {
  public:
-  static constexpr std::size_t count = 3;
+  static constexpr std::size_t count = 4;
 
   SeedFiles() {
     const auto file = folder_.path() / "seed.h5";
@@ -29,6 +31,8 @@ class SeedFiles {
     bytes_[1] = bench::read_whole_file(file);
     schema::write_session(file, session());
     bytes_[2] = bench::read_whole_file(file);
+    test::write_sample_sweep(file);
+    bytes_[3] = bench::read_whole_file(file);
   }
 
   [[nodiscard]] const std::string& bytes(std::size_t seed) const { return bytes_.at(seed); }

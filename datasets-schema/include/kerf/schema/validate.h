@@ -13,8 +13,8 @@ struct Violation {
   std::string expected;
 };
 
-/// What a file says that it is: "kerf.recording", "kerf.regression", "kerf.session"; empty if it says nothing
-/// or cannot be read.
+/// What a file says that it is: "kerf.recording", "kerf.regression", "kerf.session", "kerf.sweep"; empty if
+/// it says nothing or cannot be read.
 [[nodiscard]] std::string schema_of(const std::filesystem::path& file);
 
 /// Checks a file against the schema that it names (a recording's if it names none of them) and lists every

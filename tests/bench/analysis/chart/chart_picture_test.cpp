@@ -126,13 +126,13 @@ TEST(ChartPicture, KeepsWithinItsBordersWhatIsUnknownOrTooSmall) {
   chart["points"][0].update({{"error_jnd", nullptr}, {"p50_ns", 0.1}, {"stable", false}});
   chart["points"][1]["error_jnd"] = 0.0;
   const Chart picture = chart_picture(chart);
-  EXPECT_EQ(picture.x_label, "error, root mean square [JND]");
-  EXPECT_EQ(curve(picture, "kelvin").x[0], 1000.0);
-  EXPECT_EQ(curve(picture, "kelvin").x[1], 1e-4);
+  EXPECT_EQ(picture.x_label, "error, root mean square [JND]; at the edges: less, more");
+  EXPECT_EQ(curve(picture, "kelvin").x[0], 100.0);
+  EXPECT_EQ(curve(picture, "kelvin").x[1], 1e-2);
   EXPECT_EQ(curve(picture, "kelvin").y[0], 2e-3);
-  EXPECT_THAT(curve(picture, "not stable").x, ElementsAre(1000.0));
-  EXPECT_EQ(picture.x_range.begin, 0.5e-4);
-  EXPECT_EQ(picture.x_range.end, 3000.0);
+  EXPECT_THAT(curve(picture, "not stable").x, ElementsAre(100.0));
+  EXPECT_EQ(picture.x_range.begin, 0.5e-2);
+  EXPECT_EQ(picture.x_range.end, 300.0);
 }
 
 TEST(ChartPicture, SaysHowFarTheReferenceItselfErrs) {

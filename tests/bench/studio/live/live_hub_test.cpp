@@ -152,6 +152,24 @@ TEST(LiveHub, RecordsFromAnyMomentOnWithTimesFromTheFirstRow) {
                                  "0.203 stop: the recording was stopped; the loop went on"));
 }
 
+TEST(LiveHub, MarksTheNextRowForThoseWhoWatchAndInTheRecording) {
+  const test::TemporaryFolder folder;
+  HubBench bench;
+  bench.hub.mark("before it is recorded");
+  bench.run(100);
+  bench.hub.start_recording(folder / "r.h5", false);
+  bench.run(20);
+  bench.hub.mark("the tissue tears");
+  bench.run(20);
+  bench.hub.stop_recording();
+  const LiveFrame frame = bench.hub.history().frame_since(0, 1, 1000);
+  EXPECT_THAT(lines_of(frame.events), testing::IsSupersetOf({HasSubstr("0.000 mark: before it is recorded"),
+                                                             HasSubstr("0.120 mark: the tissue tears")}));
+  const std::vector<std::string> lines = lines_of(schema::read_recording(folder / "r.h5").events);
+  EXPECT_THAT(lines, testing::Contains("0.020 mark: the tissue tears"));
+  EXPECT_THAT(lines, testing::Not(testing::Contains(HasSubstr("before it is recorded"))));
+}
+
 TEST(LiveHub, KeepsTheGapsOfALoopThatLostRowsButNotThoseBeforeItsRecording) {
   const test::TemporaryFolder folder;
   HubBench bench;

@@ -1,7 +1,8 @@
 // node budget.mjs KERF NODE_MODULES SECONDS: what the page costs the browser, as JSON. For scripts/benchmark studio page:
 // these are durations, which a test has no business with.
 
-import { resolve } from "node:path";
+import { copyFile } from "node:fs/promises";
+import { join, resolve } from "node:path";
 import { gzipSync } from "node:zlib";
 
 import { openBrowser, openPage, Studio, until } from "./harness.mjs";
@@ -12,7 +13,7 @@ const median = (values) => [...values].sort((a, b) => a - b)[Math.floor(values.l
 
 async function compressed(studio) {
   let bytes = 0;
-  for (const path of ["/", "/studio.js", "/studio.css", "/icon.svg"]) {
+  for (const path of ["/", "/studio.js", "/parallel.js", "/studio.css", "/icon.svg"]) {
     const answer = await fetch(studio.origin + path, { headers: { "X-Kerf-Token": studio.token } });
     bytes += gzipSync(Buffer.from(await answer.arrayBuffer())).length;
   }
@@ -34,6 +35,49 @@ async function paints(browser, studio, times) {
     await page.context().close();
   }
   return first;
+}
+
+/** From the key that asks for a tab to the next frame in which it shows something [ms], each tab by turns. */
+async function tabChanges(browser, studio, rounds) {
+  const page = await openPage(browser);
+  await page.goto(studio.page(`recording/${await studio.id("recordings", "cut.h5")}/time`));
+  await page.waitForSelector(".time_plot");
+  const found = {};
+  for (let round = 0; round < rounds; ++round) {
+    for (const tab of ["loop", "cycles", "law", "fits", "chart", "report", "time"]) {
+      const taken = await page.evaluate(async (name) => {
+        const begin = performance.now();
+        document.getElementById(`tab_${name}`).click();
+        const panel = document.getElementById("tab_panel");
+        while (panel.childElementCount === 0) await new Promise((go) => setTimeout(go));
+        await new Promise((go) => requestAnimationFrame(() => setTimeout(go)));
+        return performance.now() - begin;
+      }, tab);
+      (found[tab] ??= []).push(taken);
+      await page.waitForTimeout(400);
+    }
+  }
+  await page.context().close();
+  return Object.fromEntries(Object.entries(found).map(([tab, all]) => [tab, median(all)]));
+}
+
+/** From the page's start to a list that counts 5,000 recordings [ms]. */
+async function longList(browser, program) {
+  const studio = await Studio.make(program);
+  try {
+    studio.kerfOrThrow("record", "--device", "sim:scissors", "--seconds", "0.1", "--virtual", "-o", "r.h5");
+    for (let k = 1; k < 5000; ++k) await copyFile(join(studio.folder, "r.h5"), join(studio.folder, `r${k}.h5`));
+    await studio.serve();
+    const page = await openPage(browser);
+    await page.goto(studio.page("scope"));
+    const count = page.locator(".list_count", { hasText: "5,000" });
+    await count.waitFor();
+    const taken = await page.evaluate(() => performance.now());
+    await page.context().close();
+    return taken;
+  } finally {
+    await studio.remove();
+  }
 }
 
 /** What a page does while the scope runs: long tasks, frames, shifts of the layout, memory after a collection. */
@@ -110,8 +154,11 @@ async function wakes(browser, studio, turns) {
 const studio = await Studio.make(program);
 const browser = await openBrowser(modules);
 try {
+  studio.record("cut.h5", 20);
   await studio.serve();
   const paint = await paints(browser, studio, 9);
+  const tab_ms = await tabChanges(browser, studio, 9);
+  const list_ms = await longList(browser, program);
   const watched = await watch(browser, studio);
   for (const context of browser.contexts()) await context.close();
   const wake = await wakes(browser, studio, 7);
@@ -119,6 +166,8 @@ try {
     JSON.stringify({
       bytes: await compressed(studio),
       first_paint_ms: median(paint),
+      tab_ms,
+      list_ms,
       slowest_paint_ms: Math.max(...paint),
       watched,
       wake,

@@ -8,9 +8,10 @@ import { audit } from "./accessibility.mjs";
 import { expect, expectEqual, expectNoComplaints, openPage, until } from "./harness.mjs";
 import { makePunch } from "./recordings_pages.mjs";
 import { makeStudy } from "./study_pages.mjs";
+import { makeSweep } from "./sweep_pages.mjs";
 
 /** A workspace in which every page has something to show. */
-async function furnish(studio) {
+export async function furnish(studio) {
   studio.record("cut.h5", 20);
   studio.record("another_cut.h5", 10);
   studio.kerfOrThrow("session", "key", "keeper.key");
@@ -18,6 +19,7 @@ async function furnish(studio) {
   studio.makeSession(protocol);
   await makePunch(studio);
   await makeStudy(studio);
+  await makeSweep(studio);
   const search = ["--max-force", "2", "--z-width", "--rungs", "3", "--repeats", "1", "--resolution", "0.2"];
   studio.kerfOrThrow(
     "identify",
@@ -45,9 +47,11 @@ async function furnish(studio) {
   };
   return {
     recording,
+    another: await studio.id("recordings", "another_cut.h5"),
     punch: await studio.id("recordings", "punch.h5"),
     device: await studio.id("files", "axis/identify.json"),
     study: (await studio.api("/api/studies")).json[0].id,
+    sweep: await studio.id("files", "walls.merged/sweep.h5"),
     fit: await work("/api/fit", { recording, axis: "theta", models: ["kelvin", "exponential", "piecewise"], folds: 2 }),
     chart: await work("/api/chart", { recording, axis: "theta", models: ["kelvin", "exponential"] }),
     stability: await work("/api/stability", { device: "sim:scissors", rate_hz: 1000, grip: "light", cells: 40 }),
@@ -69,15 +73,21 @@ export const tests = {
     const places = {
       scope: "scope",
       recordings: "recordings",
-      recording: `recordings/${ids.recording}`,
-      editor: `editor/${ids.recording}`,
-      fits: `fits/${ids.fit}`,
-      chart: `chart/${ids.chart}`,
+      import: "import",
+      recording: `recording/${ids.recording}/time`,
+      overlay: `recording/${ids.recording}/time?over=${ids.another}&align=cycle`,
+      loops: `recording/${ids.recording}/loop?loops=average&over=${ids.another}`,
+      editor: `recording/${ids.recording}/law`,
+      fits: `recording/${ids.recording}/fits?fit=${ids.fit}`,
+      chart: `recording/${ids.recording}/chart?chart=${ids.chart}`,
+      report: `recording/${ids.recording}/report`,
       stability: `stability/${ids.stability}`,
       sessions: "sessions",
       device: `devices/${ids.device}`,
-      flags: `recordings/${ids.punch}`,
+      flags: `recording/${ids.punch}/time`,
       study: `studies/${ids.study}`,
+      work: "work/prepare?recording=cut.h5",
+      sweep: `sweeps/${ids.sweep}?by=mass`,
     };
     const complaints = [];
     for (const colorScheme of ["light", "dark"]) {
@@ -97,11 +107,20 @@ export const tests = {
         if (name === "scope") await page.waitForTimeout(5500);
         else await settled(page);
         if (name === "study") await page.waitForFunction(() => document.querySelectorAll(".small_plot").length === 5);
+        if (name === "sweep") await page.waitForSelector("g.brush .overlay");
         await look(name);
         if (name === "flags") {
-          await page.click("#tab_worth");
+          await page.click("#tab_cycles");
           await page.waitForSelector(".inspection table");
           await look("inspect");
+        }
+        if (name === "recordings") {
+          await page.keyboard.press("?");
+          await look("keys");
+          await page.keyboard.press("?");
+          await page.keyboard.press("Control+k");
+          await page.keyboard.type("cut");
+          await look("palette");
         }
         expectNoComplaints(page);
         await page.context().close();
@@ -113,7 +132,7 @@ export const tests = {
   async "the page is less than 150 kB"({ studio }) {
     await studio.serve();
     let bytes = 0;
-    for (const path of ["/", "/studio.js", "/studio.css", "/icon.svg"]) {
+    for (const path of ["/", "/studio.js", "/parallel.js", "/studio.css", "/icon.svg"]) {
       const answer = await fetch(studio.origin + path, { headers: { "X-Kerf-Token": studio.token } });
       bytes += gzipSync(Buffer.from(await answer.arrayBuffer())).length;
     }

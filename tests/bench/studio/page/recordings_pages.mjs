@@ -22,6 +22,9 @@ async function openRecording(page, studio, name) {
   await page.waitForSelector(".time_plot");
 }
 
+/** Opens what stands under a button of the tab's tools. */
+const popover = (page, name) => page.click(`.tab_tools summary:has-text("${name}")`);
+
 const reading = (page) => page.textContent(".time_reading");
 const views = (page) => {
   const asked = [];
@@ -65,15 +68,15 @@ function ground(page, plot, at_s, pixels) {
 /** But for what mixing it with what lies below has rounded. */
 const isColour = (found, wanted) => found.every((it, i) => Math.abs(it - wanted[i]) <= 3);
 const vermillion = [193, 77, 0, 255];
-const ink = [23, 33, 43, 255];
+const ink = [22, 27, 34, 255];
 
 export const tests = {
   async ListsAndFiltersRecordings({ browser, studio }) {
     const page = await prepare({ browser, studio });
     await page.goto(studio.page("recordings"));
     await page.waitForSelector("tbody tr");
-    expectEqual(await page.locator("tbody tr").count(), 2, "rows");
-    await page.fill("input[type=search]", "OTH");
+    expectEqual(await page.locator("main tbody tr").count(), 2, "rows");
+    await page.fill("main input[type=search]", "OTH");
     expectEqual(await page.locator("tbody tr a").allTextContents(), ["other.h5"], "what the filter leaves");
     await page.click("tbody tr a");
     await page.waitForSelector(".time_plot");
@@ -88,7 +91,7 @@ export const tests = {
     await openRecording(page, studio, "cut.h5");
     await until("the whole is asked for", () => asked.length > 0);
     const width = await page
-      .locator(".u-over")
+      .locator(".time_over")
       .first()
       .evaluate((it) => it.clientWidth);
     expect(Math.abs(Number(asked[0].columns) - width) <= 1, `${asked[0].columns} columns for ${width} pixels`);
@@ -116,15 +119,15 @@ export const tests = {
   async ShowsCyclesOneByOne({ browser, studio, screenshots }) {
     const page = await prepare({ browser, studio });
     await openRecording(page, studio, "cut.h5");
-    await page.click("#tab_loops");
+    await page.click("#tab_loop");
     const text = () => page.textContent(".loops_text");
     await until("cycles are there", async () => /^Cycles 1 to \d+ of \d+/.test(await text()));
-    await page.selectOption(".recording_loops select", "one");
+    await page.selectOption(".recording_loops select >> nth=0", "one");
     await until("the first", async () => (await text()).startsWith("Cycle 1 of"));
-    await page.focus(".loops_frame");
-    await page.keyboard.press("ArrowRight");
+    await page.focus(".loops_frame svg.xy_plot");
+    await page.keyboard.press("]");
     await until("the second", async () => (await text()).startsWith("Cycle 2 of"));
-    await page.selectOption(".recording_loops select", "average");
+    await page.selectOption(".recording_loops select >> nth=0", "average");
     await until("the average", async () => (await page.locator(".loops_frame .curve").count()) === 2);
     await page.screenshot({ path: `${screenshots}/loops.png` });
     expectNoComplaints(page);
@@ -160,6 +163,7 @@ export const tests = {
     for (const { reason } of last.flags) expect(said.at(-1).includes(reason), `${reason} in ${said.at(-1)}`);
     expect(said.at(-1).includes("tool put down"), said.at(-1));
     const whole = await reading(page);
+    await popover(page, "Cycles");
     await page.locator(".recording_flags li.flagged button").last().click();
     await until("it is shown", async () => {
       const [from, to] = (await reading(page)).match(/[\d.]+/g).map(Number);
@@ -175,7 +179,7 @@ export const tests = {
     const id = await studio.id("recordings", "punch.h5");
     const { inspection } = (await studio.api(`/api/recording/inspection?id=${id}`)).json;
     for (const [name, value] of Object.entries(inspection)) expectEqual(value, verb[name], name);
-    await page.click("#tab_worth");
+    await page.click("#tab_cycles");
     await page.waitForSelector(".inspection table");
     const warnings = await page.locator(".warnings li span:last-child").allTextContents();
     expectEqual(warnings, verb.warnings, "warnings, which come first");
@@ -208,7 +212,12 @@ export const tests = {
       "flagged ones",
     );
     await rows.last().locator("button").click();
-    await page.waitForSelector("#tab_time[aria-selected=true]");
+    const { begin_s, duration_s } = verb.cycles.list.at(-1);
+    await until("the rows of the last cycle are shown", async () => {
+      const from = Number(/[?&]from=([^&]*)/.exec(page.url())?.[1] ?? 0);
+      return from > begin_s - 2 && from < begin_s + duration_s;
+    });
+    await page.waitForSelector(".cycle_plots", { state: "visible" });
     expectNoComplaints(page);
   },
 
@@ -217,6 +226,7 @@ export const tests = {
     const asked = views(page);
     await openRecording(page, studio, "cut.h5");
     const other = await studio.id("recordings", "other.h5");
+    await popover(page, "Laid over");
     await page.selectOption(".overlay select", other);
     await until("both are drawn", async () => (await page.locator(".time_legend").first().locator("li").count()) === 3);
     await until("the other is fetched", () => asked.some((it) => it.id === other));
@@ -238,10 +248,10 @@ export const tests = {
       expectEqual(await audit(page), [], `complaints, ${colorScheme}, the list`);
       await openRecording(page, studio, "cut.h5");
       expectEqual(await audit(page), [], `complaints, ${colorScheme}, over time`);
-      await page.click("#tab_loops");
+      await page.click("#tab_loop");
       await page.waitForSelector(".loops_frame .curve");
       expectEqual(await audit(page), [], `complaints, ${colorScheme}, loops`);
-      await page.click("#tab_worth");
+      await page.click("#tab_cycles");
       await page.waitForSelector(".inspection table");
       expectEqual(await audit(page), [], `complaints, ${colorScheme}, inspected`);
     }

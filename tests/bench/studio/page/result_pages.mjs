@@ -30,6 +30,13 @@ async function heading(page, pattern) {
   await until(`the heading is ${pattern}`, async () => pattern.test((await page.textContent("h1")) ?? ""), limit_ms);
 }
 
+/** The tab of the recording shows this result: a job's opens by itself. */
+async function result(page, recording, name) {
+  await heading(page, new RegExp(`^${recording}$`));
+  const chosen = page.locator(".tab_head select option:checked");
+  await until(`${name} is shown`, async () => (await chosen.textContent().catch(() => "")) === name, limit_ms);
+}
+
 async function go(page, studio, place) {
   await page.goto(`${studio.url}#/${place}`);
   await page.waitForSelector("main form, main table");
@@ -53,7 +60,7 @@ async function testFits(page, studio) {
   await pickRecording(page, "cut.h5");
   await tick(page, "kelvin", "exponential");
   await page.getByRole("button", { name: "Fit", exact: true }).click();
-  await heading(page, /^Fit cut\.fit$/);
+  await result(page, "cut.h5", "cut.fit");
   const written = await jsonIn(studio, "cut.fit/fit.json");
   expectEqual(
     await page.locator("table.fits tbody th").allTextContents(),
@@ -74,13 +81,16 @@ async function testFits(page, studio) {
   );
   const rmse = written.fits.find((it) => it.model === "exponential").rmse;
   const shown = await until("residuals are shown", async () =>
-    /Error ([\d.]+) mN/.exec((await page.textContent(".residuals .figures")) ?? ""),
+    /exponential: Error ([\d.]+) mN/.exec((await page.textContent(".residuals .figures")) ?? ""),
   );
   expect(
     Math.abs(Number(shown[1]) / (1000 * rmse) - 1) < 0.01,
     `residuals of ${shown[1]} mN are the fit's ${1000 * rmse} mN`,
   );
-  expect((await page.locator(".residuals .extremes").getAttribute("d")).length > 1000, "residuals are drawn over time");
+  expect(
+    (await page.locator(".residuals .extremes.exponential").getAttribute("d")).length > 1000,
+    "residuals are drawn over time",
+  );
   expectEqual(
     await page.locator(".detail svg.interval").count(),
     Object.keys(written.fits[0].parameters).length,
@@ -112,7 +122,7 @@ async function testChart(page, studio) {
   await pickRecording(page, "short.h5");
   await tick(page, "kelvin");
   await page.getByRole("button", { name: "Chart", exact: true }).click();
-  await heading(page, /short\.chart$/);
+  await result(page, "short.h5", "short.chart");
   const { points } = await jsonIn(studio, "short.chart/chart.json");
   expectEqual(await page.locator("g.point").count(), points.length, "points");
   const texts = await expectAsInPrint(page, studio, "short.chart/chart.svg");
@@ -242,7 +252,7 @@ async function testDevice(page, studio) {
   expect(titles.length === 5 && titles[4].startsWith("Z-width"), `response, coherence, friction, Z-width: ${titles}`);
   const marks = axis.charts[0].figure.curves.find((it) => it.mark === "points").x.length;
   expectEqual(
-    await page.locator("main figure").first().locator(".over .mark").count(),
+    await page.locator("main figure").first().locator(".plot .mark").count(),
     marks,
     "points of the response",
   );

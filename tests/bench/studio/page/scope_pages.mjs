@@ -44,12 +44,13 @@ export const tests = {
     await record(page, studio, "live");
     await page.screenshot({ path: join(screenshots, "scope_recording.png") });
     await page.getByRole("button", { name: "Stop recording" }).click();
+    await page.getByRole("link", { name: "Saved as live.h5" }).waitFor();
     await until("the recording is there", () => existsSync(join(studio.folder, "live.h5")));
     expectEqual(studio.kerf("validate", "live.h5").status, 0, "kerf validate live.h5");
     const facts = JSON.parse(studio.kerfOrThrow("info", "live.h5", "--json").stdout);
     expect(facts.samples >= 1000, `${facts.samples} rows are recorded`);
     await page.goto(studio.page("recordings"));
-    await page.getByRole("link", { name: "live.h5" }).click();
+    await page.locator("main").getByRole("link", { name: "live.h5", exact: true }).click();
     await page.getByRole("heading", { name: "live.h5" }).waitFor();
     expectNoComplaints(page);
   },
@@ -59,7 +60,7 @@ export const tests = {
     const page = await openScope(browser, studio);
     await startLoop(page);
     await page.getByRole("button", { name: "Pause" }).click();
-    const plots = page.locator(".uplot canvas").first();
+    const plots = page.locator(".time_over canvas").first();
     const look = async () => (await plots.screenshot()).toString("base64");
     await page.waitForTimeout(300);
     const still = await look();

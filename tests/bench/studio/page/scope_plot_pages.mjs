@@ -88,7 +88,7 @@ export const tests = {
     await page.click(".record button");
     await until("rows are counted", async () => /^[1-9][\d,]* rows/.test(await page.textContent(".recorded")));
     await page.click(".record button");
-    await until("it is closed", async () => (await page.textContent(".recorded")) === "Not recording");
+    await until("it is closed", async () => (await page.textContent(".recorded")).startsWith("Saved as"));
     expect(await studio.id("recordings", "from_the_scope.h5"), "the recording is in the workspace");
     expectNoComplaints(page);
   },
@@ -138,7 +138,7 @@ export const tests = {
           );
       }).observe({ type: "layout-shift" });
     });
-    const box = await page.locator(".u-over").first().boundingBox();
+    const box = await page.locator(".time_over").first().boundingBox();
     await page.mouse.move(box.x + 200, box.y + 20);
     await page.mouse.move(box.x + 300, box.y + 20, { steps: 10 });
     await page.keyboard.press("Escape");

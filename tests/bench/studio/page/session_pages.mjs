@@ -169,7 +169,7 @@ export const tests = {
     const page = await openPage(browser);
     await page.goto(studio.page("sessions"));
     await page.getByRole("button", { name: "Stop the session" }).click();
-    await page.getByText("it can be gone on with").waitFor();
+    await page.getByText("it can be continued").waitFor();
   },
 
   async "a device that a session loses is told on every page, until another begins"({ browser, studio }) {

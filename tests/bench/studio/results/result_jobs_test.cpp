@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/studio/results/finished_jobs.h"
+#include "bench/studio/jobs/finished_jobs.h"
 #include "laws/law_file.h"
 #include "support/program.h"
 #include "support/recordings.h"
@@ -41,6 +41,12 @@ class StudioResults : public testing::Test {
   }
 
   WorkspaceEntry entry() { return workspace_.find(workspace_.id_of(recording_), FileKind::recording); }
+  FitRequest fit_of(std::vector<std::string> models, std::size_t folds = 5) {
+    FitRequest request{.recording = entry(), .asked = {}};
+    request.asked.options.models = std::move(models);
+    request.asked.options.fit.folds = folds;
+    return request;
+  }
   json run(JobOrder order) { return ended_job(jobs_, jobs_.add(std::move(order))); }
   /// What the verb writes into a folder outside of the workspace.
   json by_verb(std::vector<std::string> arguments, const std::string& file) {
@@ -59,7 +65,7 @@ class StudioResults : public testing::Test {
 };
 
 TEST_F(StudioResults, AFitIsWhatTheVerbWrites) {
-  const json job = run(fit_job(workspace_, {.recording = entry(), .models = {"kelvin", "piecewise"}}));
+  const json job = run(fit_job(workspace_, fit_of({"kelvin", "piecewise"})));
   ASSERT_EQ(job["state"], "done") << job["error"];
   EXPECT_EQ(job["title"], "Fit of punch.h5");
   EXPECT_EQ(job["file"], workspace_.id_of(folder_ / "punch.fit/fit.json"));
@@ -139,7 +145,7 @@ TEST_F(StudioResults, AMapOfALawNamesItsFile) {
 }
 
 TEST_F(StudioResults, EarlierOnesStayUnderTheirNames) {
-  const FitRequest kelvin{.recording = entry(), .models = {"kelvin"}, .folds = 0};
+  const FitRequest kelvin = fit_of({"kelvin"}, 0);
   for (int i = 0; i < 3; ++i) EXPECT_EQ(run(fit_job(workspace_, kelvin))["state"], "done");
   EXPECT_THAT(names_in(folder_.path()),
               testing::ElementsAre("punch-2.fit", "punch-3.fit", "punch.fit", "punch.h5"));
@@ -148,13 +154,14 @@ TEST_F(StudioResults, EarlierOnesStayUnderTheirNames) {
 TEST_F(StudioResults, WhatAKilledStudioLeftUnfinishedGoes) {
   constexpr auto nobody = "2147483647";  // is no process
   std::filesystem::create_directory(folder_ / (std::string("punch.chart.writing-") + nobody));
-  EXPECT_EQ(run(fit_job(workspace_, {.recording = entry(), .models = {"kelvin"}, .folds = 0}))["state"],
-            "done");
+  EXPECT_EQ(run(fit_job(workspace_, fit_of({"kelvin"}, 0)))["state"], "done");
   EXPECT_THAT(names_in(folder_.path()), testing::ElementsAre("punch.fit", "punch.h5"));
 }
 
 TEST_F(StudioResults, NothingIsLeftOfOneThatFailedOrWasStopped) {
-  const json failed = run(fit_job(workspace_, {.recording = entry(), .axis = "theta"}));
+  FitRequest elsewhere = fit_of({});
+  elsewhere.asked.axis = "theta";
+  const json failed = run(fit_job(workspace_, elsewhere));
   EXPECT_EQ(failed["state"], "failed");
   EXPECT_THAT(failed["error"].get<std::string>(), HasSubstr("no axis 'theta'; it has z"));
   for (JobOrder stopped :

@@ -8,7 +8,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/studio/results/finished_jobs.h"
+#include "bench/studio/jobs/finished_jobs.h"
+#include "jobs/job_routes.h"
 #include "laws/law_file.h"
 #include "support/program.h"
 #include "support/recordings.h"
@@ -31,6 +32,7 @@ class ResultRoutes : public testing::Test {
     std::filesystem::create_directory(folder_ / "old.fit");
     test::write_text(folder_ / "old.fit/fit.json", R"({"jnd": 0.1})");
     add_result_routes(routes_, workspace_, jobs_);
+    add_job_routes(routes_, jobs_);
     add_workspace_routes(routes_, workspace_, "sim:scissors");
   }
 
@@ -120,6 +122,75 @@ TEST_F(ResultRoutes, ShowALawAndWhatItLeavesOfARecording) {
   EXPECT_EQ(std::ranges::count_if(fitted, [](const json& one) { return one.at("usual").get<bool>(); }), 5);
 }
 
+TEST_F(ResultRoutes, TakeEveryOptionOfAFit) {
+  const json asked{{"recording", id("punch.h5")},
+                   {"axis", "z"},
+                   {"models", {"piecewise"}},
+                   {"rows", "all"},
+                   {"cycles", "all"},
+                   {"contact", 0.0},
+                   {"direction", "increasing"},
+                   {"rate", 500},
+                   {"noise", 0.01},
+                   {"segments", "2"},
+                   {"folds", 0},
+                   {"test_share", 0.25},
+                   {"loss", "huber"},
+                   {"loss_scale", 0.02},
+                   {"confidence", 0.9},
+                   {"weber", 0.1},
+                   {"threshold", 0.04},
+                   {"points_per_segment", 5}};
+  const HttpResponse taken = post("/api/fit", asked);
+  ASSERT_EQ(taken.status, 200) << taken.body;
+  const json job = test::ended_job(jobs_, json::parse(taken.body)["job"]);
+  ASSERT_EQ(job["state"], "done") << job["error"];
+  const json fit = json::parse(get("/api/result", {{"id", job["file"]}}).body);
+  const json& settings = fit["settings"];
+  EXPECT_EQ(settings["rows"], "all");
+  EXPECT_EQ(settings["loop_rate_hz"], 500.0);
+  EXPECT_EQ(settings["folds"], 0);
+  EXPECT_EQ(settings["test_share"], 0.25);
+  EXPECT_EQ(settings["loss"], "huber");
+  EXPECT_EQ(settings["loss_scale"], 0.02);
+  EXPECT_EQ(settings["confidence"], 0.9);
+  EXPECT_EQ(settings["weber_fraction"], 0.1);
+  EXPECT_EQ(settings["threshold"], 0.04);
+  EXPECT_EQ(fit["recordings"][0]["noise"], 0.01);
+  EXPECT_EQ(fit["fits"][0]["options"]["segments"], 2.0);
+}
+
+TEST_F(ResultRoutes, HandOutALawForAnotherProgram) {
+  const json hosts = json::parse(get("/api/laws/hosts").body);
+  EXPECT_GE(hosts.size(), 7U);
+  EXPECT_EQ(hosts[0]["name"], "c");
+  const auto exported = [this](const std::string& host) {
+    return get("/api/law/exported", {{"id", id("tissue.law.toml")}, {"host", host}});
+  };
+  const HttpResponse c = exported("c");
+  ASSERT_EQ(c.status, 200) << c.body;
+  EXPECT_THAT(c.body, HasSubstr("tissue"));
+  EXPECT_EQ(c.type, "application/octet-stream");
+  const HttpResponse unity = exported("unity");
+  ASSERT_EQ(unity.status, 200) << unity.body;
+  EXPECT_THAT(unity.body, testing::StartsWith(unity.type == "application/zip" ? "PK" : "//"));
+  EXPECT_EQ(exported("c").body, c.body) << "the same law, the same bytes";
+}
+
+TEST_F(ResultRoutes, SayHowWellAFittedLawIsKnown) {
+  const HttpResponse taken =
+      post("/api/fit", {{"recording", id("punch.h5")}, {"axis", "z"}, {"models", {"kelvin"}}, {"folds", 2}});
+  ASSERT_EQ(test::ended_job(jobs_, json::parse(taken.body)["job"])["state"], "done");
+  const json left = json::parse(get("/api/residuals", {{"id", id("punch.h5")},
+                                                       {"axis", "z"},
+                                                       {"law", id("punch.fit/kelvin.law.toml")},
+                                                       {"columns", "50"}})
+                                    .body);
+  ASSERT_TRUE(left.contains("interval")) << left;
+  EXPECT_EQ(left["interval"]["confidence"], 0.95);
+  EXPECT_EQ(left["interval"]["closing"].size(), left["penetration"].size());
+}
+
 TEST_F(ResultRoutes, SayWhichLawsHaveBreakpoints) {
   write_law_file(folder_ / "knots.law.toml",
                  {.law = models::Law::make("piecewise", std::vector{0.0, 1.0, 0.0, 2.0}, {{"segments", 1.0}}),
@@ -151,6 +222,15 @@ TEST_F(ResultRoutes, RefuseWhatIsNotAsItShouldBeInOneLine) {
       {fit({{"folds", 101}}), "folds"},
       {fit({{"folds", 1}}), "folds"},
       {fit({{"folds", 2.5}}), "folds"},
+      {fit({{"cycles", "2-"}}), "2-"},
+      {fit({{"segments", "many"}}), "many"},
+      {fit({{"profile", 1}}), "profile"},
+      {fit({{"option", {"segments"}}}), "segments"},
+      {fit({{"loss", "cubes"}}), "cubes"},
+      {fit({{"jobs", 3}}), "no option 'jobs'"},
+      {get("/api/law/exported", {{"id", id("tissue.law.toml")}, {"host", "lisp"}}),
+       "no host 'lisp'; the hosts are c"},
+      {get("/api/law/exported", {{"id", recording}, {"host", "c"}}), "no such law"},
       {post("/api/chart", {{"recording", recording}, {"models", {"blade"}}}), "blade"},
       {post("/api/choose", {{"recording", recording}, {"rate_hz", 5}}), "rate_hz"},
       {map({{"device", "falcon"}}), "sim:scissors"},

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -50,6 +51,82 @@ TEST(StudioResiduals, OfATooStiffLawGrowWithThePenetration) {
     EXPECT_LE(json["low"][bin], json["mean"][bin]);
     EXPECT_LE(json["mean"][bin], json["high"][bin]);
   }
+}
+
+TEST(StudioResiduals, OfACoarseEncoderAreOneLineWithoutPieces) {
+  schema::Recording recording = test::punch({.noise_n = 0.0});
+  const double most = *std::max_element(recording.position.begin(), recording.position.end());
+  for (double& position : recording.position) position = std::round(8.0 * position / most) * most / 8.0;
+  const auto json = residuals_of(recording, 0, tissue(), 10);
+  EXPECT_EQ(json["penetration"].size(), 9U) << "as many as the encoder has steps";
+  for (const auto* name : {"penetration", "mean", "low", "high"}) {
+    for (const auto& value : json[name]) EXPECT_TRUE(value.is_number()) << name;
+  }
+}
+
+TEST(StudioResiduals, OfARelaxationAreSeenOverTime) {
+  schema::Recording recording = test::punch({.noise_n = 0.0});
+  for (std::size_t i = 0; i < recording.position.size(); ++i) {
+    recording.position[i] = 0.005;
+    recording.velocity[i] = 0.0;
+    recording.force_measured[i] = 1.5 + std::exp(-recording.time[i]);
+  }
+  const auto json = residuals_of(recording, 0, tissue(), 40);
+  const auto& forces = json["over_time"];
+  ASSERT_EQ(forces["measured_largest"].size(), 40U);
+  EXPECT_NEAR(forces["measured_largest"][0], 2.5, 1e-9);
+  EXPECT_LT(forces["measured_smallest"][39], 1.6);
+  for (std::size_t i = 0; i < 40; ++i) {
+    EXPECT_GT(forces["law_largest"][i].get<double>(), 1.0) << "the law is there too";
+    EXPECT_LE(forces["law_smallest"][i], forces["law_largest"][i]);
+  }
+}
+
+TEST(StudioResiduals, SayInWhichRowsTheErrorLies) {
+  schema::Recording recording = test::punch({.noise_n = 0.0});
+  for (std::size_t i = 2100; i < 2200; ++i) recording.force_measured[i] += 1.0;
+  const auto json = residuals_of(recording, 0, tissue(), 10);
+  ASSERT_EQ(json["places"].size(), 1U) << json["places"];
+  const auto& place = json["places"][0];
+  EXPECT_LE(place["from_s"], 2.1);
+  EXPECT_GE(place["to_s"], 2.199);
+  EXPECT_NEAR(place["share"], 1.0, 1e-6);
+  EXPECT_LE(place["to_s"].get<double>() - place["from_s"].get<double>(), 0.21) << "a twentieth of 4 s";
+}
+
+/// Of a spring alone, whose force grows with its stiffness by the penetration: an interval of q std_error x.
+TEST(StudioResiduals, HaveTheIntervalOfTheLawsForce) {
+  const FitUncertainty known{
+      .parameters = {"parallel_stiffness"}, .covariance = {4.0}, .quantile = 1.5, .confidence = 0.9};
+  const auto json = residuals_of(test::punch({.noise_n = 0.0}), 0, tissue(), 10, known);
+  EXPECT_EQ(json["interval"]["confidence"], 0.9);
+  const auto penetration = json["penetration"].get<std::vector<double>>();
+  const double within_a_bin = penetration[11] - penetration[10];
+  for (std::size_t bin = 10; bin < penetration.size(); ++bin)
+    EXPECT_NEAR(json["interval"]["closing"][bin], 1.5 * 2.0 * penetration[bin], 3.0 * within_a_bin);
+  const FitUncertainty another{
+      .parameters = {"magic"}, .covariance = {4.0}, .quantile = 1.5, .confidence = 0.9};
+  EXPECT_FALSE(residuals_of(test::punch(), 0, tissue(), 10, another).contains("interval"));
+}
+
+TEST(StudioUncertainty, IsThatOfTheFit) {
+  auto fits = nlohmann::ordered_json::parse(R"({"settings": {"confidence": 0.95}, "fits": [
+    {"law_files": ["other.law.toml"], "parameters": {}, "correlation": {"parameters": [], "matrix": []}},
+    {"law_files": ["kelvin.law.toml"],
+     "parameters": {"a": {"value": 5, "std_error": 2, "ci95": [1, 9]}, "b": {"value": 1, "std_error": 3, "ci95": [-5, 7]}},
+     "correlation": {"parameters": ["a", "b"], "matrix": [[1, -0.5], [-0.5, 1]]}}]})");
+  const auto known = uncertainty_in(fits, "kelvin.law.toml");
+  ASSERT_TRUE(known);
+  EXPECT_EQ(known->covariance, (std::vector<double>{4.0, -3.0, -3.0, 9.0}));
+  EXPECT_EQ(known->quantile, 2.0);
+  EXPECT_FALSE(uncertainty_in(fits, "other.law.toml"));
+  EXPECT_FALSE(uncertainty_in(fits, "nobody.law.toml"));
+  // An interval that follows no covariance says nothing of it, and one of a logarithm is taken as that.
+  fits["fits"][1]["parameters"]["b"].update({{"interval_by", "profile"}, {"ci95", {-500.0, 700.0}}});
+  fits["fits"][1]["parameters"]["a"]["ci95"] = {5.0 * std::exp(-1.2), 5.0 * std::exp(1.2)};
+  EXPECT_NEAR(uncertainty_in(fits, "kelvin.law.toml")->quantile, 1.2 * 5.0 / 2.0, 1e-9);
+  fits["fits"][1]["parameters"]["b"]["std_error"] = nullptr;
+  EXPECT_FALSE(uncertainty_in(fits, "kelvin.law.toml")) << "the data do not determine it";
 }
 
 TEST(StudioResiduals, RefuseALawInOtherUnits) {

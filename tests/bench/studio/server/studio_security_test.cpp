@@ -84,12 +84,15 @@ const std::vector<std::string> gets{"/",
                                     "/api/studies",
                                     "/api/study?id=0",
                                     "/api/study/report?id=0",
+                                    "/parallel.js",
+                                    "/api/sweep?id=0",
                                     "/api/session",
                                     "/nothing"};
-const std::vector<std::string> posts{"/api/live/start",      "/api/live/resume", "/api/live/record",
-                                     "/api/live/feel",       "/api/editor/save", "/api/fit",
-                                     "/api/chart",           "/api/stability",   "/api/session/start",
-                                     "/api/session/quality", "/api/session/note"};
+const std::vector<std::string> posts{"/api/live/start",      "/api/live/resume",  "/api/live/record",
+                                     "/api/live/feel",       "/api/editor/save",  "/api/fit",
+                                     "/api/chart",           "/api/stability",    "/api/session/start",
+                                     "/api/session/quality", "/api/session/note", "/api/sweep/answer",
+                                     "/api/sweep/sample"};
 const std::string zero = "/api/live/zero";
 
 std::string with_parameter(const std::string& target, const std::string& parameter) {

@@ -112,6 +112,20 @@ TEST(ForceLoops, SayWhyThereAreNone) {
   EXPECT_THROW((void)axis_cycles(file, 2), std::invalid_argument);
 }
 
+TEST(ForceLoops, OfAllRowsAreThereWhereThereAreNoCycles) {
+  const SavedRecording saved(cutting(5.0, true));
+  const schema::RecordingFile file(saved.path());
+  const ForceLoop whole = whole_loop(file, 0, axis_cycles(file, 0));
+  EXPECT_GT(whole.position.size(), 100U);
+  EXPECT_LE(whole.position.size(), 6000U);
+  EXPECT_EQ(whole.position.size(), whole.force.size());
+  schema::Recording mute = cutting(5.0, true);
+  mute.force_measured.clear();
+  const SavedRecording other(mute);
+  const schema::RecordingFile without(other.path());
+  EXPECT_TRUE(whole_loop(without, 0, axis_cycles(without, 0)).position.empty());
+}
+
 TEST(ForceLoops, PassOverPhasesThatHoldNoRows) {
   schema::Recording recording = cutting(5.0, true);
   recording.cycles = find_cycles(recording, {.axis = 1});

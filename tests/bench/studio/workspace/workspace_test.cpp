@@ -1,9 +1,14 @@
 #include "workspace/workspace.h"
 
+#include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <thread>
+#include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -59,6 +64,26 @@ TEST_F(WorkspaceOfALab, KnowsFilesByTheirNamesAndWhatIsInThem) {
   put(folder_.path() / "not hdf5.h5");
   EXPECT_THAT(names(), ElementsAre("law a.law.toml", "recording b/cut.h5", "fit cut.fit/fit.json",
                                    "recording cut.h5.partial", "study drawer/study.toml"));
+}
+
+TEST_F(WorkspaceOfALab, ListsManyFilesBeforeItHasLookedIntoThem) {
+  constexpr int many = 40;
+  write_recording_of_one_row(folder_.path() / "a.h5");
+  const fs::path no_hdf5 = folder_.path() / "no hdf5 0.h5";
+  for (int i = 0; i < many; ++i) put(folder_.path() / fmt::format("no hdf5 {}.h5", i));
+  const std::vector<WorkspaceEntry> first = workspace_.scan();
+  EXPECT_EQ(first.size(), many + 1U);
+  EXPECT_TRUE(std::ranges::none_of(first, [](const WorkspaceEntry& it) { return it.is_looked_into; }));
+  // What is asked for is looked into at once.
+  EXPECT_EQ(workspace_.find(workspace_.id_of(folder_.path() / "a.h5"), FileKind::recording).seconds, 0.0);
+  EXPECT_THROW((void)workspace_.find(workspace_.id_of(no_hdf5), FileKind::recording), RequestError);
+  std::vector<WorkspaceEntry> all;
+  do {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    all = workspace_.scan();
+  } while (std::ranges::any_of(all, [](const WorkspaceEntry& it) { return !it.is_looked_into; }));
+  ASSERT_EQ(all.size(), 1U);
+  EXPECT_EQ(all.front().name, "a.h5");
 }
 
 TEST_F(WorkspaceOfALab, LeavesOutWhatIsHiddenUnfinishedDeepOrLeadsOutside) {

@@ -42,5 +42,12 @@ TEST_F(KilledShard, MayBeKilledAgainAndAgain) {
   EXPECT_EQ(merged(), whole);
 }
 
+TEST(KilledShards, ComeToTheSameBytesAfterAHundredKillsAtRandomMoments) {
+  const Outcome outcome = test::run({KERF_SOURCE_DIR "/scripts/kill-shards", KERF_PROGRAM, "100"});
+  EXPECT_EQ(outcome.exit_status, 0) << outcome.errors;
+  EXPECT_NE(outcome.output.find("100 kills"), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find("the same bytes"), std::string::npos) << outcome.output;
+}
+
 }  // namespace
 }  // namespace kerf::bench

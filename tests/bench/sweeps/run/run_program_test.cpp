@@ -1,5 +1,7 @@
 // `kerf sweep run`: shards, workers, what stops it.
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -99,6 +101,31 @@ TEST_F(SweepRun, EndsWith75WhenItIsStoppedAndGoesOn) {
   }
 }
 
+TEST_F(SweepRun, IsOneOfManyThatWereStartedAtOnce) {
+  (void)plan_of(test::walls());
+  ASSERT_EQ(run_it({"-j", "1", "-o", file("alone").string()}).exit_status, 0);
+  const auto alone = merged("alone");
+  std::array<Outcome, 6> all;
+  {
+    std::vector<std::jthread> starters;
+    for (Outcome& one : all) starters.emplace_back([&] { one = run_it({"-j", "1", "--json"}); });
+  }
+  std::uint64_t computed = 0;
+  for (const Outcome& one : all) {
+    if (one.exit_status == 0) {
+      computed += nlohmann::json::parse(one.output).at("computed").get<std::uint64_t>();
+    } else {
+      EXPECT_EQ(one.exit_status, 2);
+      EXPECT_THAT(one.errors, HasSubstr("computes this shard; wait until it ends"));
+      EXPECT_EQ(std::count(one.errors.begin(), one.errors.end(), '\n'), 1) << one.errors;
+    }
+  }
+  EXPECT_EQ(computed, 20U) << "each cell by one of them";
+  EXPECT_EQ(merged(), alone);
+  EXPECT_EQ(std::distance(fs::directory_iterator(file("w.shards")), fs::directory_iterator()), 1)
+      << "no lock and no partial file is left";
+}
+
 TEST_F(SweepRun, TakesOverFromOneThatWasKilled) {
   (void)plan_of(test::walls());
   const pid_t process = start_hanging("10");
@@ -116,7 +143,11 @@ TEST_F(SweepRun, RefusesRecordingsThatAreNotWhatTheyWere) {
   EXPECT_EQ(changed.exit_status, 2);
   EXPECT_THAT(changed.errors, HasSubstr("r.h5: it is not the file that was planned with"));
   fs::remove(file("r.h5"));
-  EXPECT_EQ(run_it().exit_status, 2);
+  const Outcome gone = run_it();
+  EXPECT_EQ(gone.exit_status, 2);
+  EXPECT_THAT(gone.errors, HasSubstr("r.h5: "));
+  EXPECT_EQ(std::count(gone.errors.begin(), gone.errors.end(), '\n'), 1) << gone.errors;
+  EXPECT_FALSE(fs::exists(file("w.shards/0-of-1.shard.partial"))) << "nothing was begun";
 }
 
 TEST_F(SweepRun, RefusesShardsOfAPlanThatWasChangedSince) {

@@ -71,7 +71,9 @@ TEST_F(ShardLocked, StaysWithAProcessThatLivesAlsoWhereFilesHaveNoLocks) {
     living = ShardLock::holder_of(place_);
   }
   leave_behind(living);
+  fs::remove(guarded_);
   EXPECT_NE(refusal().find("process " + std::to_string(::getpid())), std::string::npos);
+  EXPECT_FALSE(fs::exists(guarded_)) << "who is refused makes none";
 }
 
 const LockHolder elsewhere{.host = "node7", .boot = "another", .process = 4711, .started = "5"};
@@ -100,6 +102,39 @@ TEST_F(ShardLocked, StaysWithAnotherMachineThatCountsOn) {
   const std::string why = refusal({.silence = milliseconds(20'000)});
   end = true;
   EXPECT_NE(why.find("process 4711 on node7"), std::string::npos) << why;
+}
+
+TEST_F(ShardLocked, AsksNoClockOfAnotherMachine) {
+  for (const auto skew : {std::chrono::hours(-24 * 365), std::chrono::hours(24 * 365)}) {
+    const auto set = [&](const fs::path& file) {
+      fs::last_write_time(file, fs::file_time_type::clock::now() + skew);
+    };
+    leave_behind(elsewhere);
+    set(ShardLock::path_of(place_));
+    std::string told;
+    const auto take = [&] {
+      const ShardLock lock(
+          place_, guarded_,
+          {.silence = milliseconds(150), .tell = [&](const std::string& line) { told += line; }});
+    };
+    EXPECT_NO_THROW(take()) << "silent, whatever time its file is of";
+    EXPECT_NE(told.find("left it behind"), std::string::npos) << told;
+    leave_behind(elsewhere);
+    std::atomic<bool> end{false};
+    std::jthread holder([&] {
+      LockHolder now = elsewhere;
+      for (; !end; std::this_thread::sleep_for(milliseconds(20))) {
+        ++now.beat;
+        test::write_text(folder_ / "next", now.as_text());
+        set(folder_ / "next");
+        fs::rename(folder_ / "next", ShardLock::path_of(place_));
+      }
+    });
+    EXPECT_NE(refusal({.silence = milliseconds(20'000)}), "") << "alive, whatever time its file is of";
+    end = true;
+    holder.join();
+    fs::remove(ShardLock::path_of(place_));
+  }
 }
 
 TEST_F(ShardLocked, IsNotedAsLostWhereSomebodyElseTookIt) {

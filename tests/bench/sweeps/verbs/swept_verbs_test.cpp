@@ -7,27 +7,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "bench/sweeps/swept.h"
+#include "bench/sweeps/verbs/swept_cell.h"
 #include "support/kelvin_law.h"
-#include "verbs/sweep_verb.h"
 
 namespace kerf::bench {
 namespace {
 
 using test::Outcome;
 
-class SweptVerbs : public test::SweepFolder {
- protected:
-  [[nodiscard]] static CellNumbers computed(const PlanFile& plan, std::uint64_t cell = 0) {
-    return plan.plan.verb->begin(plan.plan)->compute(plan.plan.cell(cell));
-  }
-  [[nodiscard]] static double value_of(const CellNumbers& numbers, const std::string& name) {
-    for (std::size_t i = 0; i < numbers.columns.size(); ++i)
-      if (numbers.columns[i].name == name) return numbers.values[i];
-    ADD_FAILURE() << "no column " << name;
-    return 0.0;
-  }
-};
+using SweptVerbs = test::SweptCell;
 
 TEST_F(SweptVerbs, IdentifyFindsWhatItsVerbFinds) {
   const PlanFile plan = plan_of(
@@ -69,16 +57,16 @@ TEST_F(SweptVerbs, GiveTheSameNumbersWhateverWasComputedBefore) {
   for (std::uint64_t cell = 0; cell < plan.plan.cells(); ++cell)
     forwards[cell] = work->compute(plan.plan.cell(cell)).values;
   for (std::uint64_t cell = plan.plan.cells(); cell-- > 0;) {
-    const std::vector<double> again = work->compute(plan.plan.cell(cell)).values;
-    ASSERT_EQ(again.size(), forwards[cell].size());
-    for (std::size_t i = 0; i < again.size(); ++i)
-      EXPECT_TRUE(again[i] == forwards[cell][i] || (std::isnan(again[i]) && std::isnan(forwards[cell][i])));
+    expect_same(work->compute(plan.plan.cell(cell)).values, forwards[cell]);
   }
 }
 
 TEST(SweepVerbs, SayWhatTheyTake) {
   for (const SweepVerb* const verb : sweep_verbs()) {
     bool after_files = false;
+    std::vector<std::string> names;
+    for (const SweepInput& input : verb->inputs()) names.push_back(input.name);
+    EXPECT_EQ(names, test::documented_inputs(std::string(verb->name))) << "the order of docs/sweeps.md";
     for (const SweepInput& input : verb->inputs()) {
       EXPECT_FALSE(input.what.empty()) << verb->name << ' ' << input.name;
       EXPECT_FALSE(input.required && input.standard) << verb->name << ' ' << input.name;

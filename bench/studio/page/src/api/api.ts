@@ -25,8 +25,9 @@ export class Api {
     return this.read(path, parameters, signal, async (answer) => (await answer.json()) as Answer);
   }
 
-  async post<Answer = unknown>(path: string, body: unknown = {}): Promise<Answer> {
+  async post<Answer = unknown>(path: string, body: unknown = {}, signal?: AbortSignal): Promise<Answer> {
     const answer = await this.send(path, {
+      ...(signal ? { signal } : {}),
       method: "POST",
       headers: { "Content-Type": "application/json" },
       body: JSON.stringify(body),
@@ -34,9 +35,46 @@ export class Api {
     return (await answer.json()) as Answer;
   }
 
+  /** A piece of a file; an answer that does not come in 20 s counts as none. */
+  async postBytes<Answer>(
+    path: string,
+    parameters: Parameters,
+    bytes: ArrayBuffer,
+    signal: AbortSignal,
+  ): Promise<Answer> {
+    const own = new AbortController();
+    const end = (): void => own.abort();
+    const patience = setTimeout(end, 20_000);
+    signal.addEventListener("abort", end);
+    try {
+      const headers = { "Content-Type": "application/octet-stream" };
+      const answer = await this.send(address(path, parameters), {
+        method: "POST",
+        headers,
+        body: bytes,
+        signal: own.signal,
+      });
+      return (await answer.json()) as Answer;
+    } catch (error) {
+      if (own.signal.aborted && !signal.aborted) throw silent();
+      throw error;
+    } finally {
+      clearTimeout(patience);
+      signal.removeEventListener("abort", end);
+    }
+  }
+
   /** A stretch of traces: /api/live/view or /api/recording/view. */
   async view(path: string, parameters: Parameters, signal?: AbortSignal): Promise<TraceView> {
     return this.read(path, parameters, signal, async (answer) => traceView(await answer.arrayBuffer()));
+  }
+
+  /** A file, as the server has it. */
+  async file(path: string, parameters: Parameters): Promise<{ content: Blob; type: string }> {
+    return this.read(path, parameters, undefined, async (answer) => ({
+      content: await answer.blob(),
+      type: answer.headers.get("Content-Type") ?? "",
+    }));
   }
 
   /** Server-sent events; the browser connects again by itself. */

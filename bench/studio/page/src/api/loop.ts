@@ -28,6 +28,8 @@ export interface LoopStatus {
   rows_lost: number;
   wake_s: Percentiles; // of the last ten seconds
   cycle_s: Percentiles;
+  whole_wake_s: Percentiles; // since the loop began
+  whole_cycle_s: Percentiles;
   ended: string; // the fault that ended the loop, until dismissed; else empty
   force: ForceState;
   force_reason: string; // why, where a person has to know

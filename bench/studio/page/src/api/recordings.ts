@@ -61,6 +61,7 @@ export interface Loops {
   reason?: string; // why there are no cycles
   loops: { cycle: number; position: number[]; force: (number | null)[] }[];
   average: { position: number[]; closing: (number | null)[]; opening: (number | null)[] };
+  whole?: { position: number[]; force: (number | null)[] }; // where there are no cycles: all rows
 }
 
 /** Columns of smallest and largest values; bytes_of() in the server's trace_view.h. */

@@ -1,16 +1,6 @@
 import type { Figure } from "../ui/figure_description";
 
-// Work that takes a while: fits, charts, choices, stability maps; and laws.
-
-export interface Job {
-  job: number;
-  kind: "fit" | "chart" | "choice" | "stability";
-  title: string;
-  state: "waiting" | "running" | "done" | "failed" | "stopped";
-  share: number; // 0 to 1; -1 where it is not known
-  error: string;
-  file: string; // id of the result in the workspace; empty if there is none yet
-}
+// What fits, charts, choices and stability maps come to; and laws.
 
 /** A law that can be fitted; empty units: any axis. */
 export interface FittedLaw {
@@ -41,7 +31,10 @@ export interface LawFit {
   r2: number;
   bic: number;
   cv_rmse: number | null;
-  cv_rmse_rendered?: number | null; // missing in files of earlier versions
+  cv_rmse_rendered?: number | null; // missing in files of earlier versions, as the next
+  cv_std_error?: number | null;
+  test_rmse?: number | null; // of what no fit has seen
+  test_rmse_rendered?: number | null;
   blame?: string; // what is to blame for its error, where it is not within the JND
   jnd_fraction: number;
   correlation: { parameters: string[]; matrix: (number | null)[][] };
@@ -55,6 +48,7 @@ export interface FitFile {
   samples: number;
   settings: { folds: number; confidence: number };
   line_rmse: number;
+  floor?: { position: number | null; velocity: number | null; noise: number }; // what nothing errs by less than
   jnd: number;
   fits: LawFit[];
   refused: { model: string; why: string }[];
@@ -213,6 +207,7 @@ export interface LawView {
   position_unit: string;
   force_unit: string;
   equation: string;
+  contact: { position: number; direction: number };
   options: Record<string, boolean | number | string>;
   parameters: { name: string; value: number; unit: string; std_error: number | null; meaning: string }[];
   toml: string;
@@ -235,6 +230,16 @@ export interface Residuals {
   mean: (number | null)[];
   low: (number | null)[];
   high: (number | null)[];
+  over_time: {
+    measured_smallest: number[];
+    measured_largest: number[];
+    law_smallest: number[];
+    law_largest: number[];
+  };
+  /** Where its error lies, the largest share of the squared error first. */
+  places: { from_s: number; to_s: number; cycle?: number; phase?: string; rmse: number; share: number }[];
+  /** Half the width of the interval of the law's force; not there where a fit does not tell it. */
+  interval?: { confidence: number; closing: (number | null)[]; opening: (number | null)[] };
   loop: {
     measured_closing: (number | null)[];
     measured_opening: (number | null)[];

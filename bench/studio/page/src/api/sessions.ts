@@ -10,6 +10,7 @@ export interface SessionState {
   stage: string;
   ended: string;
   warnings: string[];
+  has_key_file: boolean; // the studio was started with --key-file
   quality: SessionQuality | null; // of the session that runs or ran last
   notes: SessionNote[];
 }

@@ -43,15 +43,28 @@ export interface ApparatusItem {
 export interface WorkspaceFile {
   id: string;
   name: string;
-  kind: "fit" | "chart" | "choice" | "stability" | "suite" | "scene" | "protocol" | "study" | "device";
+  kind: "fit" | "chart" | "choice" | "stability" | "suite" | "scene" | "protocol" | "study" | "device" | "sweep";
+  modified: string; // ISO 8601
 }
 
 export interface Workspace {
   folder: string;
   version: string;
   device: string;
+  state: string; // what is in the folder as a number of its own: asked with `unless`, nothing is told anew
+  unlooked: number; // recordings that have not been looked into yet, of which only name, size and time are known
   recordings: WorkspaceRecording[];
   laws: WorkspaceLaw[];
   sessions: WorkspaceSession[];
   files: WorkspaceFile[];
+}
+
+/** A recording in small: the extremes of one signal, 0 to 100 of its range, -1 where nothing is known. */
+export interface Thumbnail {
+  signal: string;
+  low: number[];
+  high: number[];
+  cycles: number; // -1: it is not segmented
+  flagged: number; // cycles that the file says are not good
+  status: string;
 }

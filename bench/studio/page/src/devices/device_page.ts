@@ -1,7 +1,7 @@
 import type { DescribedChart, DeviceAxis, DeviceFile, DeviceNumber, Estimate } from "../api/results";
 import { element, table } from "../ui/dom";
-import { FigurePlot } from "../ui/figure";
 import { withUnit } from "../ui/numbers";
+import { Plot } from "../ui/plot/plot";
 import { intervalBar, reachOf } from "../results/interval_bar";
 
 /** "the model fits: this model predicts the device to 2.1 %", or why that cannot be said. */
@@ -49,14 +49,13 @@ function words(lines: readonly string[]): HTMLElement {
 /** A device as `kerf identify` found it: of each axis the verdict, the numbers, and every chart that the file describes. */
 export class DevicePage {
   readonly root = element("div", { class: "device" });
-  private readonly plots: FigurePlot[] = [];
+  private readonly plots: Plot[] = [];
 
   constructor(of: DeviceFile) {
     const how = of.held ? "held in a hand: mass and friction are those of both" : "nobody held it";
     this.root.append(element("p", { class: "quiet" }, `${of.device}, ${of.model}; ${how}.`));
     for (const axis of of.axes) this.root.append(this.axis(axis));
     if (of.charts) this.root.append(this.charts(of.charts));
-    for (const it of this.plots) it.show();
   }
 
   end(): void {
@@ -81,15 +80,10 @@ export class DevicePage {
   private charts(described: readonly DescribedChart[]): HTMLElement {
     const figures = described.map(({ name, figure }) => {
       const title = figure.title || name;
-      const plot = new FigurePlot(figure, title, () => undefined);
+      const plot = new Plot(title);
       this.plots.push(plot);
-      return element(
-        "figure",
-        { class: "card figure" },
-        element("figcaption", {}, title),
-        element("div", { class: "plot" }, plot.plot.svg),
-        plot.legend,
-      );
+      plot.show(figure);
+      return plot.figure(title);
     });
     return element("div", { class: "charts" }, ...figures);
   }

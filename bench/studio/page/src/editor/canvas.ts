@@ -1,46 +1,43 @@
 import type { LawError } from "../api/editor";
 import type { Loops } from "../api/recordings";
 import { drawn } from "../ui/dom";
+import { figureOf, type FigureCurve } from "../ui/figure_description";
 import { plain } from "../ui/numbers";
-import { XyPlot, type PlotLine } from "../ui/xy_plot";
+import { linePath } from "../ui/plot/draw";
+import { Plot } from "../ui/plot/plot";
+import type { Limits } from "../ui/plot/frame";
+import type { Range } from "../ui/plot/scale";
 import type { Drawing } from "./drawing";
 import { branchesOf } from "./error";
 import { Handles } from "./handles";
 import { forceAt, type Spot } from "./knots";
-import { averages, cycles, jndBands, lawLine, limitsFor } from "./lines";
+import { averages, cycles, jndBands, lawCurves, lawLine, limitsFor } from "./lines";
 import { inUnits } from "./scale";
 
 /** The plot that is drawn on: averages and law, breakpoints, the worst place, and a cursor for the keyboard. */
 export class Canvas {
-  readonly plot: XyPlot;
+  readonly plot: Plot;
   readonly handles: Handles;
   /** Where the keyboard's cursor is, in the units of the plot; shown while the plot itself has the focus. */
   cursor: { x: number; y: number };
   private worst: LawError | null = null;
-  private single: PlotLine[] = [];
+  private single: FigureCurve[] = [];
   private isFitted = false;
-  private readonly frame = drawn("rect", {});
-  private readonly below = drawn("g", { class: "law", "clip-path": "url(#editor_frame)" });
+  private readonly below = drawn("g", { class: "law" });
   private readonly above = drawn("g", { class: "marks" });
 
   constructor(private readonly drawing: Drawing) {
-    const { curve, position, force } = drawing;
-    this.plot = new XyPlot(
-      { label: `penetration along ${curve.axis} [${position.unit}]` },
-      { label: `resisting force [${force.unit}]` },
-      "Averaged cycle and drawn law",
-      () => this.draw(),
-    );
+    const { curve } = drawing;
+    this.plot = new Plot("Averaged cycle and drawn law", {
+      still: true,
+      redrawn: () => this.draw(),
+      with: () => lawCurves(drawing),
+    });
+    this.below.setAttribute("clip-path", this.plot.clip);
     this.handles = new Handles(drawing, this.plot);
     this.plot.svg.setAttribute("role", "application");
     this.plot.svg.setAttribute("tabindex", "0");
-    this.plot.layer.append(
-      drawn("defs", {}, drawn("clipPath", { id: "editor_frame" }, this.frame)),
-      this.below,
-      this.above,
-      this.handles.group,
-    );
-    this.plot.svg.querySelector(".curves")?.setAttribute("clip-path", "url(#editor_frame)");
+    this.plot.layer.append(this.below, this.above, this.handles.group);
     this.cursor = this.fromSpot(
       this.onLaw(0.5 * (curve.penetration[0]! + curve.penetration[curve.penetration.length - 1]!)),
     );
@@ -56,20 +53,24 @@ export class Canvas {
     const wanted = limitsFor(this.drawing.curve, this.drawing.knots, this.drawing);
     if (this.isFitted) {
       const { x, y } = this.plot.limits;
-      const grown = (old: [number, number], now: [number, number]): [number, number] => [
-        Math.min(old[0], now[0]),
-        Math.max(old[1], now[1]),
-      ];
+      const grown = (old: Range, now: Range): Range => [Math.min(old[0], now[0]), Math.max(old[1], now[1])];
       wanted.x = grown(x, wanted.x);
       wanted.y = grown(y, wanted.y);
     }
     this.isFitted = true;
-    this.plot.show([...this.single, ...averages(this.drawing)], wanted);
+    this.show(wanted);
   }
 
   showCycles(loops: Loops | null): void {
     this.single = loops ? cycles(this.drawing, loops) : [];
-    this.plot.show([...this.single, ...averages(this.drawing)], this.plot.limits);
+    this.show(this.plot.limits);
+  }
+
+  private show(limits: Limits): void {
+    const { curve, position, force } = this.drawing;
+    const x = `penetration along ${curve.axis} [${position.unit}]`;
+    const curves = [...this.single, ...averages(this.drawing)];
+    this.plot.show(figureOf(x, `resisting force [${force.unit}]`, { curves }), limits);
   }
 
   showWorst(error: LawError | null): void {
@@ -117,14 +118,20 @@ export class Canvas {
     const left = plot.x(plot.limits.x[0]);
     const top = plot.y(plot.limits.y[1]);
     const sides = { x: left, y: top, width: plot.x(plot.limits.x[1]) - left, height: plot.y(plot.limits.y[0]) - top };
-    for (const [name, value] of Object.entries(sides)) this.frame.setAttribute(name, value.toFixed(1));
     const branches = branchesOf(this.drawing.knots);
     const bands = this.drawing.band
       ? branches.flatMap((it) => jndBands(this.drawing, it).map((band) => ({ band, branch: it })))
       : [];
     this.below.replaceChildren(
-      ...bands.map(({ band, branch }) => drawn("path", { class: `jnd ${branch}`, d: `${plot.path(band)}Z` })),
-      ...branches.map((it) => drawn("path", { class: `drawn ${it}`, d: plot.path(lawLine(this.drawing, it)) })),
+      ...bands.map(({ band, branch }) =>
+        drawn("path", { class: `jnd ${branch}`, d: `${linePath(band.x, band.y, plot.frame)}Z` }),
+      ),
+      ...branches.map((it) =>
+        drawn("path", {
+          class: `drawn ${it}`,
+          d: linePath(lawLine(this.drawing, it).x, lawLine(this.drawing, it).y, plot.frame),
+        }),
+      ),
     );
     this.above.replaceChildren(...this.worstMark(sides), ...this.cursorMark(sides));
     this.handles.draw();
@@ -143,7 +150,7 @@ export class Canvas {
     const middle = Math.max(frame.y + 14, Math.min(frame.y + frame.height - 6, 0.5 * (onCurve + onLaw) + 5));
     const text = `worst ${inUnits(this.worst.worst_n, force)}, ${plain(this.worst.worst_jnd, 2)} JND`;
     return [
-      drawn("line", { class: "worst", x1: x, x2: x, y1: onCurve, y2: onLaw, "clip-path": "url(#editor_frame)" }),
+      drawn("line", { class: "worst", x1: x, x2: x, y1: onCurve, y2: onLaw, "clip-path": this.plot.clip }),
       drawn("path", { class: "worst", d: `M${x - 6} ${onCurve - 6}l12 12m0 -12l-12 12` }),
       drawn(
         "text",

@@ -1,5 +1,5 @@
 import { drawn } from "../ui/dom";
-import type { XyPlot } from "../ui/xy_plot";
+import type { Plot } from "../ui/plot/plot";
 import type { Drawing } from "./drawing";
 import { branchesOf } from "./error";
 import type { Branch } from "./knots";
@@ -30,7 +30,7 @@ export class Handles {
 
   constructor(
     private readonly drawing: Drawing,
-    private readonly plot: XyPlot,
+    private readonly plot: Plot,
   ) {}
 
   draw(): void {

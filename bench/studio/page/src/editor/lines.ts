@@ -1,8 +1,9 @@
 import type { EditorCurve, Knots } from "../api/editor";
 import type { Loops } from "../api/recordings";
-import { XyPlot, type Limits, type PlotLine } from "../ui/xy_plot";
+import { figureOf, lineOf, type FigureCurve } from "../ui/figure_description";
+import { limitsOf, type Limits } from "../ui/plot/frame";
 import type { Drawing } from "./drawing";
-import { jndAt } from "./error";
+import { branchesOf, jndAt } from "./error";
 import { forceAt, type Branch } from "./knots";
 
 // The drawing in the units of its plot.
@@ -11,22 +12,22 @@ function drawn(values: readonly (number | null)[], perUnit: number): (number | n
   return values.map((it) => (it === null ? null : it * perUnit));
 }
 
-export function averages(drawing: Drawing): PlotLine[] {
+export function averages(drawing: Drawing): FigureCurve[] {
   const { curve, position, force } = drawing;
   const x = drawn(curve.penetration, position.perUnit);
   return [
-    { x, y: drawn(curve.opening, force.perUnit), class: "opening" },
-    { x, y: drawn(curve.closing, force.perUnit), class: "closing" },
+    lineOf("averaged opening", x, drawn(curve.opening, force.perUnit), { colour: "vermillion", name: "opening" }),
+    lineOf("averaged closing", x, drawn(curve.closing, force.perUnit), { name: "closing", width: 2.5 }),
   ];
 }
 
-export function cycles(drawing: Drawing, loops: Loops): PlotLine[] {
+export function cycles(drawing: Drawing, loops: Loops): FigureCurve[] {
   const { curve, position, force } = drawing;
-  return loops.loops.map((loop) => ({
-    x: loop.position.map((it) => (it - curve.contact_position) * curve.closing_direction * position.perUnit),
-    y: drawn(loop.force, force.perUnit),
-    class: "faint",
-  }));
+  return loops.loops.map((loop) => {
+    const x = loop.position.map((it) => (it - curve.contact_position) * curve.closing_direction * position.perUnit);
+    const name = `cycle ${loop.cycle}`;
+    return lineOf("", x, drawn(loop.force, force.perUnit), { colour: "grey", width: 0.7, name });
+  });
 }
 
 /** The law from end to end of the curve, with what it does beyond its breakpoints. */
@@ -41,6 +42,14 @@ export function lawLine(drawing: Drawing, branch: Branch): { x: number[]; y: num
     x: at.map((it) => it * position.perUnit),
     y: at.map((it) => forceAt(knots, branch, it) * force.perUnit),
   };
+}
+
+/** The law as it is handed out. */
+export function lawCurves(drawing: Drawing): FigureCurve[] {
+  return branchesOf(drawing.knots).map((branch) => {
+    const { x, y } = lawLine(drawing, branch);
+    return lineOf(`law, ${branch}`, x, y, { colour: "black", dashed: true, width: branch === "closing" ? 2.5 : 1.25 });
+  });
 }
 
 /** Outlines of one JND to either side of an average, one for each stretch of it. */
@@ -72,12 +81,10 @@ export function jndBands(drawing: Drawing, branch: Branch): { x: number[]; y: nu
 /** Limits with room to draw in around the curve and the breakpoints. */
 export function limitsFor(curve: EditorCurve, knots: Knots, drawing: Drawing): Limits {
   const { position, force } = drawing;
-  const limits = XyPlot.around([
-    ...averages(drawing),
-    { x: drawn(knots.penetration, position.perUnit), y: drawn(knots.closing, force.perUnit), class: "" },
-    { x: drawn(knots.penetration, position.perUnit), y: drawn(knots.opening, force.perUnit), class: "" },
-    { x: [null], y: [0], class: "" },
-  ]);
+  const at = drawn(knots.penetration, position.perUnit);
+  const places = [knots.closing, knots.opening].map((it) => lineOf("", at, drawn(it, force.perUnit)));
+  const curves = [...averages(drawing), ...places, lineOf("", [null], [0])];
+  const limits = limitsOf(figureOf("", "", { curves }));
   const room = 0.08 * (limits.y[1] - limits.y[0]);
   const least = curve.jnd.threshold_n * force.perUnit;
   return { x: limits.x, y: [limits.y[0] - Math.max(room, least), limits.y[1] + Math.max(room, least)] };

@@ -18,6 +18,15 @@ export interface Scale {
 export function scaleFor(values: readonly (number | null)[], unit: string): Scale {
   let largest = 0;
   for (const it of values) if (it !== null && Number.isFinite(it)) largest = Math.max(largest, Math.abs(it));
+  // Angles in degrees, as every plot has them.
+  if (unit === "rad") {
+    const most = (largest * 180) / Math.PI;
+    return {
+      unit: "deg",
+      perUnit: 180 / Math.PI,
+      decimals: most > 0 ? Math.max(0, 4 - Math.floor(Math.log10(most))) : 4,
+    };
+  }
   const [factor, prefix] = prefixes.find(([it]) => largest >= it) ?? (largest > 0 ? [1e-6, "µ"] : [1, ""]);
   const whole = largest > 0 ? Math.floor(Math.log10(largest / factor)) : 0;
   return { unit: prefix + unit, perUnit: 1 / factor, decimals: Math.max(0, 4 - whole) };

@@ -79,6 +79,12 @@ export function clippedMarks(runs: readonly ClippedRun[] | null): ClippedMark[] 
   return (runs ?? []).map(({ from_s, to_s, unit }) => ({ from_s, to_s, unit }));
 }
 
+/** "Cycles 12, 2 flagged". */
+export function flaggedInWords(cycles: readonly Cycle[]): string {
+  const flagged = cycles.filter((it) => !it.good).length;
+  return `Cycles ${cycles.length === 0 ? "none" : cycles.length}${flagged > 0 ? `, ${flagged} flagged` : ""}`;
+}
+
 /** The flagged cycles with their reasons; a press shows one. */
 export class FlaggedCycles {
   readonly root = element("section", { class: "recording_flags" });
@@ -87,10 +93,8 @@ export class FlaggedCycles {
 
   show(cycles: readonly Cycle[]): void {
     const said = cycles.filter((it) => it.flags.length > 0 || it.accepted !== null);
-    const flagged = said.filter((it) => !it.good).length;
-    const count = cycles.length === 0 ? "none" : `${cycles.length}, ${flagged === 0 ? "none" : flagged} flagged`;
     this.root.replaceChildren(
-      element("h2", {}, `Cycles (${count})`),
+      element("h2", {}, flaggedInWords(cycles)),
       element("ol", { class: "event_list" }, ...said.map((it) => this.entry(it))),
     );
   }

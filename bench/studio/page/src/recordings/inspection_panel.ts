@@ -1,6 +1,7 @@
 import type { InspectedCycle, InspectedSignal, Inspection, RecordingInspection } from "../api/recordings";
-import { button, element } from "../ui/dom";
+import { button, element, numberCell } from "../ui/dom";
 import { plain, withUnit } from "../ui/numbers";
+import { tableMenu } from "../ui/plot/out/export_menu";
 
 const mostCycles = 300;
 
@@ -60,7 +61,8 @@ export class InspectionPanel {
 }
 
 function scrolled(content: HTMLElement): HTMLElement {
-  return element("div", { class: "scrolled" }, content);
+  const save = content instanceof HTMLTableElement ? tableMenu(content, content.className) : null;
+  return element("div", {}, element("div", { class: "scrolled" }, content), save);
 }
 
 function tableOf(name: string, caption: string, heads: readonly string[], rows: HTMLElement[]): HTMLElement {
@@ -75,7 +77,9 @@ function tableOf(name: string, caption: string, heads: readonly string[], rows: 
 
 /** With all its digits where the pointer rests. */
 function number(value: number | null | undefined): HTMLElement {
-  return element("td", { class: "number", title: value == null ? "not known" : String(value) }, plain(value, 4));
+  const cell = numberCell(plain(value, 4), value);
+  cell.title = value == null ? "not known" : String(value);
+  return cell;
 }
 
 function warnings(inspection: Inspection): HTMLElement {

@@ -4,37 +4,61 @@ import { plain } from "../ui/numbers";
 
 const shownAtOnce = 300;
 
-/** The recordings of the workspace, newest first, with a filter by name. */
-export function recordingList(workspace: Workspace): HTMLElement {
-  const all = [...workspace.recordings].sort((a, b) => b.modified.localeCompare(a.modified));
-  const count = element("p", { class: "quiet", role: "status" });
-  const body = element("tbody");
-  const timed = all.some((it) => it.seconds !== undefined);
-  const show = (): void => {
-    const wanted = filter.value.trim().toLowerCase().split(/\s+/);
-    const found = all.filter((it) => wanted.every((word) => it.name.toLowerCase().includes(word)));
-    body.replaceChildren(...found.slice(0, shownAtOnce).map((it) => row(it, timed)));
+/** The recordings of the workspace, newest first, with a filter by name. It follows the folder. */
+export class RecordingList {
+  readonly root: HTMLElement;
+  private all: readonly WorkspaceRecording[] = [];
+  private readonly count = element("p", { class: "quiet", role: "status" });
+  private readonly frame = element("div", { class: "table_frame" });
+  private readonly filter = element("input", {
+    type: "search",
+    autocomplete: "off",
+    spellcheck: "false",
+    input: () => this.draw(),
+  });
+
+  constructor() {
+    this.root = element(
+      "section",
+      { class: "recording_list" },
+      element("div", { class: "row" }, labelled("Filter by name", this.filter), this.count),
+      this.frame,
+    );
+  }
+
+  show(workspace: Workspace): void {
+    this.all = [...workspace.recordings].sort((a, b) => b.modified.localeCompare(a.modified));
+    if (this.all.length > 0) return this.draw();
+    this.count.textContent = "";
+    const none = `No recordings in ${workspace.folder} yet. Record one on the scope, or by kerf record.`;
+    this.frame.replaceChildren(element("p", {}, none));
+  }
+
+  private draw(): void {
+    const wanted = this.filter.value.trim().toLowerCase().split(/\s+/);
+    const found = this.all.filter((it) => wanted.every((word) => it.name.toLowerCase().includes(word)));
+    const timed = this.all.some((it) => it.seconds !== undefined);
+    const heads = element(
+      "tr",
+      {},
+      element("th", { scope: "col" }, "Name"),
+      timed ? element("th", { scope: "col", class: "number" }, "Length") : null,
+      element("th", { scope: "col", class: "number" }, "Size"),
+      element("th", { scope: "col" }, "Changed"),
+    );
+    const focused = this.frame.contains(document.activeElement) ? document.activeElement?.getAttribute("href") : null;
+    this.frame.replaceChildren(
+      element(
+        "table",
+        {},
+        element("thead", {}, heads),
+        element("tbody", {}, ...found.slice(0, shownAtOnce).map((it) => row(it, timed))),
+      ),
+    );
+    if (focused) this.frame.querySelector<HTMLElement>(`a[href="${focused}"]`)?.focus({ preventScroll: true });
     const more = found.length > shownAtOnce ? `; the newest ${shownAtOnce} are shown` : "";
-    count.textContent = `${found.length} of ${all.length} recordings${more}`;
-  };
-  const filter = element("input", { type: "search", autocomplete: "off", spellcheck: "false", input: show });
-  const heads = element(
-    "tr",
-    {},
-    element("th", { scope: "col" }, "Name"),
-    timed ? element("th", { scope: "col", class: "number" }, "Length") : null,
-    element("th", { scope: "col", class: "number" }, "Size"),
-    element("th", { scope: "col" }, "Changed"),
-  );
-  show();
-  return element(
-    "section",
-    { class: "recording_list" },
-    element("div", { class: "row" }, labelled("Filter by name", filter), count),
-    all.length > 0
-      ? element("div", { class: "table_frame" }, element("table", {}, element("thead", {}, heads), body))
-      : element("p", {}, `No recordings in ${workspace.folder} yet. Record one on the scope, or by kerf record.`),
-  );
+    this.count.textContent = `${found.length} of ${this.all.length} recordings${more}`;
+  }
 }
 
 function row(it: WorkspaceRecording, timed: boolean): HTMLElement {
@@ -44,7 +68,7 @@ function row(it: WorkspaceRecording, timed: boolean): HTMLElement {
     element(
       "td",
       {},
-      element("a", { href: `#/recordings/${it.id}` }, it.name),
+      element("a", { href: `#/recording/${it.id}/time` }, it.name),
       it.partial
         ? element(
             "p",

@@ -1,38 +1,41 @@
-import type { Api } from "../api/api";
+import "./loops.css";
+
 import type { Loops, Recording } from "../api/recordings";
 import { button, element, labelled, select } from "../ui/dom";
-import { swatch } from "../ui/time/time_plot";
-import { XyPlot, type PlotLine } from "../ui/xy_plot";
+import { figureOf, type Figure } from "../ui/figure_description";
+import { limitsOf } from "../ui/plot/frame";
+import { Plot } from "../ui/plot/plot";
+import { scaledFor } from "../ui/plot/scaled";
+import { rangeAround } from "../ui/plot/scale";
+import { loopCurves, type Kind } from "./loop_curves";
+import { namedOnce } from "./trace_groups";
+import { stateKeys } from "../recording/keys";
+import { Latest } from "../ui/latest";
+import type { Context } from "../ui/view";
 import type { Drawn } from "./recording_time";
 
-type Kind = "all" | "one" | "average";
 const atOnce = 60; // cycles
 
 /** Force against position: all cycles, one, or their average; of several recordings the averages. */
 export class RecordingLoops {
   readonly root: HTMLElement;
-  private plot: XyPlot | null = null;
-  private readonly frame = element("div", {
-    class: "loops_frame",
-    tabindex: 0,
-    role: "group",
-    keydown: (it: KeyboardEvent) => this.key(it),
-  });
+  readonly tools: HTMLElement;
+  private plots: Plot[] = [];
+  private readonly frame = element("div", { class: "loops_frame", keydown: (it: KeyboardEvent) => this.key(it) });
   private readonly text = element("p", { class: "quiet loops_text", role: "status" });
-  private readonly key_ = element("ul", { class: "mark_legend", "aria-label": "Lines" });
   private readonly kind: HTMLSelectElement;
   private readonly axis: HTMLSelectElement;
-  private readonly previous = button("Previous", () => this.step(-1), { title: "Left arrow" });
-  private readonly next = button("Next", () => this.step(1), { title: "Right arrow" });
+  private readonly beside = element("input", { type: "checkbox", change: () => this.choose() });
+  private readonly previous = button("Previous", () => this.step(-1), { title: "Key: [" });
+  private readonly next = button("Next", () => this.step(1), { title: "Key: ]" });
+  private readonly besideLabel = element("label", { class: "tick" }, this.beside, "side by side");
   private drawn: readonly Drawn[] = [];
   private cycle = 0;
   private cycles = 0;
-  private asked: AbortController | null = null;
+  private readonly latest: Latest;
 
-  constructor(
-    private readonly api: Api,
-    private readonly complain: (error: unknown) => void,
-  ) {
+  constructor(private readonly context: Context) {
+    this.latest = new Latest(context.signal);
     this.kind = select(
       [
         { value: "all", text: "all cycles" },
@@ -40,29 +43,24 @@ export class RecordingLoops {
         { value: "average", text: "average" },
       ],
       "all",
-      () => void this.load(),
+      () => this.choose(),
     );
-    this.axis = select([], "", () => void this.load());
-    this.root = element(
+    this.axis = select([], "", () => this.choose());
+    this.tools = element(
       "div",
-      { class: "recording_loops" },
-      element(
-        "div",
-        { class: "row" },
-        labelled("Show", this.kind),
-        labelled("Axis", this.axis),
-        this.previous,
-        this.next,
-        this.text,
-      ),
-      this.frame,
-      this.key_,
+      { class: "tab_tools" },
+      labelled("Show", this.kind),
+      labelled("Axis", this.axis),
+      this.previous,
+      this.next,
+      this.besideLabel,
+      this.text,
     );
+    this.root = element("div", { class: "recording_loops" }, this.tools, this.frame);
   }
 
   end(): void {
-    this.asked?.abort();
-    this.plot?.end();
+    for (const it of this.plots) it.end();
   }
 
   show(drawn: readonly Drawn[]): void {
@@ -71,13 +69,46 @@ export class RecordingLoops {
     const own = drawn[0]?.recording;
     if (!own) return;
     if (own !== before) {
-      this.cycle = 0;
-      const chosen = own.cycles?.axis ?? 0;
-      this.axis.replaceChildren(
-        ...own.axes.map((it, k) => element("option", { value: String(k), selected: k === chosen }, it.name)),
-      );
+      this.axis.replaceChildren(...own.axes.map((it, k) => element("option", { value: String(k) }, it.name)));
+      this.take(own);
     }
     void this.load();
+  }
+
+  /** What the address says has changed. */
+  follow(): void {
+    const own = this.drawn[0]?.recording;
+    if (!own) return;
+    this.take(own);
+    void this.load();
+  }
+
+  private take(own: Recording): void {
+    const { state } = this.context;
+    const kind = state.get(stateKeys.loops) ?? (state.number(stateKeys.cycle) === null ? "all" : "one");
+    this.kind.value = kind === "one" || kind === "average" ? kind : "all";
+    this.axis.value = String(state.number(stateKeys.axis) ?? own.cycles?.axis ?? 0);
+    this.beside.checked = state.get(stateKeys.beside) !== null;
+    this.cycle = Math.max(0, (state.number(stateKeys.cycle) ?? 1) - 1);
+  }
+
+  /** By hand: a step of its own in the address. */
+  private choose(): void {
+    this.keep("push");
+    void this.load();
+  }
+
+  private keep(step: "push" | "replace"): void {
+    const own = this.drawn[0]?.recording.cycles?.axis ?? 0;
+    const axis = Number(this.axis.value);
+    const kind = this.kind.value;
+    const values = {
+      [stateKeys.axis]: axis === own ? null : axis,
+      [stateKeys.loops]: kind === "all" ? null : kind,
+      [stateKeys.cycle]: kind === "one" ? this.cycle + 1 : null,
+      [stateKeys.beside]: this.beside.checked ? 1 : null,
+    };
+    this.context.state.set(values, step);
   }
 
   private step(by: number): void {
@@ -85,30 +116,31 @@ export class RecordingLoops {
     const width = this.kind.value === "one" ? 1 : atOnce;
     const last = Math.max(0, this.cycles - 1);
     this.cycle = Math.min(Math.max(0, this.cycle + by * width), last - (last % width));
+    this.keep("replace");
     void this.load();
   }
 
   private key(event: KeyboardEvent): void {
     if (event.ctrlKey || event.altKey || event.metaKey) return;
-    if (event.key !== "ArrowLeft" && event.key !== "ArrowRight") return;
+    const by = { "[": -1, "]": 1 }[event.key];
+    if (by === undefined) return;
     event.preventDefault();
-    this.step(event.key === "ArrowLeft" ? -1 : 1);
+    this.step(by);
   }
 
   private async load(): Promise<void> {
-    this.asked?.abort();
-    const { signal } = (this.asked = new AbortController());
     const kind = this.kind.value as Kind;
     if (kind === "all") this.cycle -= this.cycle % atOnce;
     const first = kind === "average" ? 0 : this.cycle;
     const count = kind === "one" ? 1 : atOnce;
     try {
-      const answers = await Promise.all(this.drawn.map((it) => this.fetch(it.recording, first, count, signal)));
-      if (!signal.aborted) this.draw(answers, kind, first);
+      const answers = await this.latest.ask((signal) =>
+        Promise.all(this.drawn.map((it) => this.fetch(it.recording, first, count, signal))),
+      );
+      if (answers) this.draw(answers, kind, first);
     } catch (error) {
-      if (signal.aborted) return;
       this.text.textContent = "";
-      this.complain(error);
+      this.context.complain(error);
     }
   }
 
@@ -118,7 +150,7 @@ export class RecordingLoops {
     const axis = recording.axes.findIndex((it) => it.name === name);
     if (axis < 0) return Promise.resolve(null);
     const wanted = { id: recording.id, axis, first: first + 1, count }; // cycles are counted from 1
-    const answer = this.api.get<Loops>("/api/recording/loops", wanted, signal);
+    const answer = this.context.api.get<Loops>("/api/recording/loops", wanted, signal);
     return recording === own ? answer : answer.catch(() => null); // one laid over that has no cycles is left out
   }
 
@@ -127,44 +159,59 @@ export class RecordingLoops {
     if (!own) return;
     this.cycles = own.cycles_in_all;
     const several = answers.length > 1;
-    const lines: PlotLine[] = [];
-    answers.forEach((loops, k) => {
-      if (!loops) return;
-      if (kind !== "average" && (k === 0 || kind === "one")) {
-        for (const it of loops.loops)
-          lines.push({ x: it.position, y: it.force, class: kind === "one" ? `look_${k}` : "many" });
-      }
-      if (kind === "average" || (k > 0 && kind === "all")) {
-        lines.push({ x: loops.average.position, y: loops.average.closing, class: `look_${k}` });
-        lines.push({ x: loops.average.position, y: loops.average.opening, class: `look_${k} second` });
-      }
-    });
-    this.replot(own);
-    this.plot?.show(lines, XyPlot.around(lines));
-    this.previous.disabled = kind === "average" || first === 0;
-    const shown = own.loops.length;
-    this.next.disabled = kind === "average" || first + shown >= own.cycles_in_all;
-    this.text.textContent = inWords(own, kind, first);
-    this.key_.replaceChildren(
-      ...(several ? this.drawn.map((it, k) => element("li", {}, swatch(k), it.name)) : []),
-      ...(kind === "average" ? [element("li", {}, "full line: closing; broken line: opening")] : []),
+    this.besideLabel.hidden = !several;
+    const name = (k: number): string => this.drawn[k]?.name ?? "";
+    const all = answers.flatMap((loops, k) => (loops ? [loopCurves(loops, kind, k, several ? name(k) : "")] : []));
+    const x = scaledFor(
+      namedOnce("position", own.axis),
+      own.position_unit,
+      all.flat().map((it) => it.x),
     );
+    const y = scaledFor(
+      namedOnce("force", own.axis),
+      own.force_unit,
+      all.flat().map((it) => it.y),
+    );
+    const apart = several && this.beside.checked;
+    const figures = (apart ? all : [all.flat()]).map((curves) => {
+      const drawn = curves.map((it) => ({ ...it, x: x.of(it.x), y: y.of(it.y) }));
+      return figureOf(x.label, y.label, { curves: drawn, notes: notesOf(kind) });
+    });
+    const names = apart
+      ? answers.flatMap((it, k) => (it ? [name(k)] : []))
+      : [this.drawn.map((it) => it.name).join(", ")];
+    this.plot(figures, names);
+    const none = kind === "average" || own.cycles_in_all === 0;
+    this.previous.disabled = none || first === 0;
+    const shown = own.loops.length;
+    this.next.disabled = none || first + shown >= own.cycles_in_all;
+    this.text.textContent = inWords(own, kind, first);
   }
 
-  private replot(loops: Loops): void {
-    const x = `position ${loops.axis} [${loops.position_unit}]`;
-    const y = `force ${loops.axis} [${loops.force_unit}]`;
-    if (this.frame.dataset.axes === x + y) return;
-    this.frame.dataset.axes = x + y;
-    this.plot?.end();
-    this.plot = new XyPlot({ label: x }, { label: y }, "Force against position");
-    this.frame.setAttribute("aria-label", "Force against position. Left and right arrow: the cycle before and after.");
-    this.frame.replaceChildren(this.plot.svg);
+  /** Side by side they have the same axes, so that they can be compared. */
+  private plot(figures: readonly Figure[], names: readonly string[]): void {
+    const title = (k: number): string => `Force against position: ${names[k] ?? ""}`;
+    if (this.plots.length !== figures.length || this.plots.some((it, k) => it.name !== title(k))) {
+      for (const it of this.plots) it.end();
+      this.plots = figures.map((_, k) => new Plot(title(k)));
+      this.frame.replaceChildren(...this.plots.map((it, k) => it.figure(figures.length > 1 ? names[k] : "")));
+    }
+    const all = figures.map(limitsOf);
+    const together = { x: rangeAround(all.map((it) => it.x)), y: rangeAround(all.map((it) => it.y)) };
+    figures.forEach((it, k) => this.plots[k]?.show(it, figures.length > 1 ? together : all[k]));
   }
+}
+
+function notesOf(kind: Kind): string[] {
+  if (kind === "average") return ["Averages of the cycles on a grid of positions."];
+  return [
+    "Of each cycle at most 600 points: of every stretch the first and last row and those of extreme position and force.",
+  ];
 }
 
 function inWords(loops: Loops, kind: Kind, first: number): string {
   const all = loops.cycles_in_all;
+  if (loops.whole) return `${loops.reason || "No cycles found."} All rows are drawn, decimated by their extremes.`;
   const found = loops.segmented_here ? ", found for this view" : "";
   if (all === 0) return loops.reason || "No cycles found.";
   if (kind === "average") return `Average of ${all} cycles${found}`;

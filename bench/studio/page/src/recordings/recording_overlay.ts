@@ -1,31 +1,33 @@
-import type { Api } from "../api/api";
 import type { Recording } from "../api/recordings";
-import type { Workspace } from "../api/workspace";
 import { button, element, labelled, select } from "../ui/dom";
 import { swatch } from "../ui/time/time_plot";
-import { atMostDrawn, type Drawn } from "./recording_time";
+import type { OpenRecording } from "../ui/view";
+import { atMostDrawn } from "./recording_time";
 
-/** Further recordings laid over the page's own, aligned at their start or at their first closing. */
+type Alignment = "start" | "cycle";
+
+interface Choices {
+  choose: (ids: readonly string[]) => void;
+  align: (at: Alignment) => void;
+}
+
+/** Chooses further recordings to be laid over the page's own, aligned at their start or at their first closing. */
 export class RecordingOverlay {
   readonly root: HTMLElement;
-  private readonly over: { recording: Recording; name: string }[] = [];
+  private ids: readonly string[] = [];
   private readonly list = element("ul", { class: "overlay_list" });
   private readonly add: HTMLSelectElement;
   private readonly alignment: HTMLSelectElement;
 
   constructor(
-    private readonly api: Api,
-    private readonly own: Recording,
-    private readonly ownName: string,
-    workspace: Workspace,
-    private readonly changed: () => void,
-    private readonly complain: (error: unknown) => void,
+    own: OpenRecording,
+    private readonly choices: Choices,
   ) {
-    const others = workspace.recordings.filter((it) => it.id !== own.id);
+    const others = own.workspace.recordings.filter((it) => it.id !== own.id);
     this.add = select(
       [{ value: "", text: "choose a recording" }, ...others.map((it) => ({ value: it.id, text: it.name }))],
       "",
-      (id) => void this.choose(id, others.find((it) => it.id === id)?.name ?? id),
+      (id) => this.choose(id),
     );
     this.alignment = select(
       [
@@ -33,7 +35,7 @@ export class RecordingOverlay {
         { value: "cycle", text: "their first closing" },
       ],
       "start",
-      () => this.changed(),
+      (at) => choices.align(at as Alignment),
     );
     this.root = element(
       "fieldset",
@@ -43,53 +45,31 @@ export class RecordingOverlay {
       labelled("Add", this.add),
       labelled("Align at", this.alignment),
     );
-    this.show();
   }
 
-  get drawn(): Drawn[] {
-    const origin = this.origin(this.own);
-    return [
-      { recording: this.own, name: this.ownName, shift_s: 0 },
-      ...this.over.map((it) => ({ ...it, shift_s: origin - this.origin(it.recording) })),
-    ];
-  }
-
-  private origin(recording: Recording): number {
-    const closing = recording.cycles?.spans.find((it) => it.phase === "closing");
-    return this.alignment.value === "cycle" && closing ? closing.from_s : recording.from_s;
-  }
-
-  private async choose(id: string, name: string): Promise<void> {
-    this.add.value = "";
-    if (id === "" || this.over.some((it) => it.recording.id === id)) return;
-    try {
-      const recording = await this.api.get<Recording>("/api/recording", { id });
-      this.over.push({ recording, name });
-      this.show();
-      this.changed();
-    } catch (error) {
-      this.complain(error);
-    }
-  }
-
-  private show(): void {
-    const drop = (k: number): void => {
-      this.over.splice(k, 1);
-      this.show();
-      this.changed();
-    };
+  show(over: readonly { recording: Recording; name: string }[], alignment: Alignment): void {
+    this.ids = over.map((it) => it.recording.id);
     this.list.replaceChildren(
-      ...this.over.map((it, k) =>
+      ...over.map((it, k) =>
         element(
           "li",
           {},
           swatch(k + 1),
-          element("span", { class: "overlay_name", title: it.name }, it.name),
-          button("×", () => drop(k), { class: "small", "aria-label": `Take ${it.name} away` }),
+          element("span", { class: "overlay_name", title: it.name }, element("bdi", {}, it.name)),
+          button("×", () => this.choices.choose(this.ids.filter((id) => id !== it.recording.id)), {
+            class: "small",
+            "aria-label": `Take ${it.name} away`,
+          }),
         ),
       ),
     );
-    this.add.disabled = this.over.length + 1 >= atMostDrawn;
-    this.alignment.disabled = this.over.length === 0;
+    this.add.disabled = over.length + 1 >= atMostDrawn;
+    this.alignment.value = alignment;
+    this.alignment.disabled = over.length === 0;
+  }
+
+  private choose(id: string): void {
+    this.add.value = "";
+    if (id !== "" && !this.ids.includes(id)) this.choices.choose([...this.ids, id]);
   }
 }

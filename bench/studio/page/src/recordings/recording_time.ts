@@ -1,7 +1,7 @@
 import type { Api } from "../api/api";
 import type { CycleSpan, Recording, RecordingInspection, Trace } from "../api/recordings";
 import { element } from "../ui/dom";
-import { dashes } from "../ui/palette";
+import { looks } from "../ui/palette";
 import { StretchLoader } from "../ui/time/stretch_loader";
 import type { Span, TimeMarks } from "../ui/time/time_marks";
 import type { TimeLine } from "../ui/time/time_line";
@@ -27,16 +27,31 @@ interface Source {
 export class RecordingTime {
   readonly root: HTMLElement;
   readonly stack: TimeStack;
+  readonly legend = legend();
   private sources: Source[] = [];
   private first: Recording | null = null;
+  private beginning = false; // what is shown at first is nobody's choice, and no state of the address
   private found: RecordingInspection | null = null;
 
   constructor(
     private readonly api: Api,
     private readonly complain: (error: unknown) => void,
+    /** Stands in the bar above the plots, before what is read there. */
+    tools: HTMLElement,
+    /** The stretch that is shown has changed; whether it is the whole. */
+    private readonly moved: (from_s: number, to_s: number, whole: boolean) => void = () => {},
   ) {
-    this.stack = new TimeStack({ name: "The recording over time", timeLabel: "time [s]", changed: () => this.want() });
-    this.root = element("div", { class: "recording_time" }, this.stack.root, legend());
+    this.stack = new TimeStack({
+      name: "The recording over time",
+      file: () => `${this.sources.map((it) => it.drawn.name.replace(/\.h5$/, "")).join(" ")} over time`,
+      timeLabel: "time [s]",
+      tools,
+      changed: ({ from, to, first, last }) => {
+        this.want();
+        if (!this.beginning) this.moved(from, to, from <= first && to >= last);
+      },
+    });
+    this.root = element("div", { class: "recording_time" }, this.stack.root);
   }
 
   end(): void {
@@ -64,6 +79,10 @@ export class RecordingTime {
 
   showAt(from_s: number, to_s: number): void {
     this.stack.range.show(from_s, to_s);
+  }
+
+  showAll(): void {
+    this.stack.range.whole();
   }
 
   private source(drawn: Drawn, traces: readonly Trace[], look: number): Source {
@@ -116,7 +135,9 @@ export class RecordingTime {
     range.bound(from, to, 10 * own.period_s);
     if (own !== this.first) {
       this.first = own;
+      this.beginning = true;
       range.whole();
+      this.beginning = false;
     } else range.show(range.from, range.to);
     this.stack.marks = marksOf(own, this.found);
   }
@@ -164,7 +185,7 @@ function legend(): HTMLElement {
 }
 
 /** How many recordings can be told apart. */
-export const atMostDrawn = Math.min(5, dashes.length);
+export const atMostDrawn = Math.min(5, looks.length);
 
 /** A file's name without its folder and ending, shortened in the middle. */
 function shortName(name: string): string {

@@ -16,16 +16,21 @@ export function axisOf(trace: Trace, axes: readonly Axis[]): string {
   return axes.find((it) => trace.name.endsWith(` ${it.name}`))?.name ?? "";
 }
 
-/** "force_commanded x" -> "force commanded x". */
+/** "force_commanded x" -> "force commanded x"; an axis that is called as its quantity is named once. */
 export function inWords(name: string): string {
-  return name.replaceAll("_", " ");
+  return name.replaceAll("_", " ").replace(/(^| )(\w+) \2$/, "$1$2");
+}
+
+/** "position theta", and "position" of an axis of that name. */
+export function namedOnce(quantity: string, axis: string): string {
+  return quantity === axis ? quantity : `${quantity} ${axis}`;
 }
 
 export function emptyLine(trace: Trace, look: number): TimeLine {
   return {
     name: inWords(trace.name),
     unit: trace.unit,
-    look: look % looks,
+    look: look % looks.length,
     time: new Float64Array(0),
     smallest: new Float64Array(0),
     largest: new Float64Array(0),
@@ -47,7 +52,7 @@ export function plotsOf(traces: readonly Trace[], lines: readonly TimeLine[], lo
       lines: [],
       logarithmic: logarithmic && trace.group === "timing",
     };
-    line.look = order.lines.length % looks;
+    line.look = order.lines.length % looks.length;
     order.lines.push(line);
     orders.set(key, order);
   });

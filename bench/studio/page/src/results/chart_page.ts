@@ -6,7 +6,6 @@ import { SortableTable } from "../ui/sortable_table";
 import type { Context } from "../ui/view";
 import { ChartPlot } from "./chart_plot";
 import { ChoicePanel } from "./choice_panel";
-import type { JobList } from "./jobs";
 import { LawPanel } from "./law_panel";
 import { byName, lawBeside, recordingsFor, resultName, stabilityInWords, stableWord } from "./names";
 
@@ -17,7 +16,7 @@ const coldTail = (point: ChartPoint): number | null => (point.cold_ticks === und
 const fronts = (point: ChartPoint): string =>
   [point.on_front ? "median" : "", point.on_cold_front ? "cold" : ""].filter(Boolean).join(", ");
 
-function tableOf(points: readonly ChartPoint[], open: (point: ChartPoint) => void): HTMLElement {
+function tableOf(source: string, points: readonly ChartPoint[], open: (point: ChartPoint) => void): HTMLElement {
   const columns = [
     {
       head: "law",
@@ -31,16 +30,19 @@ function tableOf(points: readonly ChartPoint[], open: (point: ChartPoint) => voi
     },
     {
       head: "p50 [µs]",
+      file: "p50 [ns]",
       text: (point: ChartPoint) => microseconds(point.p50_ns),
       key: (point: ChartPoint) => point.p50_ns ?? 0,
     },
     {
       head: "p99.9 [µs]",
+      file: "p99.9 [ns]",
       text: (point: ChartPoint) => microseconds(point.p999_ns),
       key: (point: ChartPoint) => point.p999_ns ?? 0,
     },
     {
       head: "cold p99.9 [µs]",
+      file: "cold p99.9 [ns]",
       text: (point: ChartPoint) => microseconds(coldTail(point)),
       key: (point: ChartPoint) => coldTail(point) ?? Infinity,
     },
@@ -56,6 +58,7 @@ function tableOf(points: readonly ChartPoint[], open: (point: ChartPoint) => voi
     },
     {
       head: "outside [%]",
+      file: "share outside the JND [1]",
       text: (point: ChartPoint) => (point.jnd_fraction == null ? "–" : (100 * point.jnd_fraction).toFixed(1)),
       key: (point: ChartPoint) => point.jnd_fraction ?? Infinity,
     },
@@ -70,7 +73,7 @@ function tableOf(points: readonly ChartPoint[], open: (point: ChartPoint) => voi
       key: (point: ChartPoint) => fronts(point) || "none",
     },
   ];
-  return new SortableTable("Every point", columns, points, open).root;
+  return new SortableTable(`Every point of ${source}`, columns, points, open).root;
 }
 
 /** A chart as it was written: points that open their laws, and the choice of one beside it. */
@@ -84,7 +87,7 @@ export class ChartPage {
     private readonly workspace: Workspace,
     private readonly file: WorkspaceFile,
     private readonly chart: ChartFile,
-    jobs: JobList,
+    order: (path: string, body: Readonly<Record<string, unknown>>) => void,
   ) {
     this.law = new LawPanel(context);
     this.plot = new ChartPlot(chart, (index) => this.open(index));
@@ -93,7 +96,7 @@ export class ChartPage {
     const choice = new ChoicePanel(
       context,
       workspace,
-      its ? () => void jobs.order("/api/choose", { recording: its.id }, (id) => context.go("chart", id)) : null,
+      its ? () => order("/api/choose", { recording: its.id }) : null,
       (id, title) => void this.law.open(id, title),
     );
     const chosen = workspace.files
@@ -118,16 +121,10 @@ export class ChartPage {
         `Errors towards ${chart.reference}. JND ${withUnit(chart.jnd_n, "N")}; a tick is ${withUnit(1 / chart.rate_hz, "s")}.`,
         unjudged > 0 ? ` The stability of ${unjudged} of ${chart.points.length} points was not judged.` : null,
       ),
-      element(
-        "div",
-        { class: "two wide" },
-        this.plot.root,
-        element("div", { class: "stack" }, this.law.root, jobs.root),
-      ),
+      element("div", { class: "two wide" }, this.plot.root, this.law.root),
       choice.root,
-      tableOf(chart.points, (point) => this.open(chart.points.indexOf(point))),
+      tableOf(chart.source, chart.points, (point) => this.open(chart.points.indexOf(point))),
       ...chart.notes.map((it) => element("p", { class: "quiet" }, it)),
-      element("p", {}, element("a", { href: "#/chart" }, "All charts")),
     );
   }
 

@@ -1,8 +1,10 @@
 import type { ChartFile, ChartPoint } from "../api/results";
 import { drawn, element } from "../ui/dom";
-import { FigurePlot } from "../ui/figure";
-import type { Spot } from "../ui/figure";
 import { plain, withUnit } from "../ui/numbers";
+import { markShape } from "../ui/plot/draw";
+import { Plot } from "../ui/plot/plot";
+import { nodeOf } from "../ui/plot/shapes";
+import { spotsOf, type Spot } from "../ui/plot/spots";
 import { stabilityInWords } from "./names";
 
 const reach = 14; // of a pointer
@@ -10,7 +12,8 @@ const reach = 14; // of a pointer
 /** A chart's figure; a point opens its law. Arrow keys go from point to point. */
 export class ChartPlot {
   readonly root: HTMLElement;
-  private readonly drawing: FigurePlot;
+  private readonly plot: Plot;
+  private readonly spots: readonly Spot[];
   private readonly readout = element(
     "p",
     { class: "readout", role: "status" },
@@ -26,19 +29,14 @@ export class ChartPlot {
     private readonly chart: ChartFile,
     private readonly open: (index: number) => void, // in the file
   ) {
-    this.drawing = new FigurePlot(chart.figure, `Cost of a tick over error, ${chart.points.length} points`, () =>
-      this.draw(),
-    );
-    const { spots, plot, legend } = this.drawing;
+    this.plot = new Plot(`Cost of a tick over error, ${chart.source}`, { ownArrows: true, redrawn: () => this.draw() });
+    const spots = (this.spots = spotsOf(chart.figure));
+    const { plot } = this;
     this.byError = [...spots].sort((a, b) => a.x - b.x || a.y - b.y);
     this.byCost = [...spots].sort((a, b) => a.y - b.y || a.x - b.x);
-    this.root = element(
-      "figure",
-      { class: "card figure chart_plot" },
-      element("div", { class: "plot" }, plot.svg),
-      this.readout,
-      legend,
-    );
+    this.root = plot.figure();
+    this.root.classList.add("chart_plot");
+    plot.reading.replaceWith(this.readout);
     // Marks lie on each other: the nearest is meant, and a second press means the one below it.
     plot.svg.addEventListener("pointermove", (event) => {
       const at = this.near(event)[0];
@@ -49,11 +47,11 @@ export class ChartPlot {
       const next = near[(near.findIndex((it) => it.of === this.opened) + 1) % near.length];
       if (next) this.open(next.of);
     });
-    this.drawing.show();
+    plot.show(chart.figure);
   }
 
   end(): void {
-    this.drawing.end();
+    this.plot.end();
   }
 
   /** Marks the point whose law is open. */
@@ -63,7 +61,7 @@ export class ChartPlot {
       0,
       this.byError.findIndex((it) => it.of === index),
     );
-    this.drawing.show();
+    this.plot.draw();
   }
 
   private draw(): void {
@@ -72,12 +70,13 @@ export class ChartPlot {
     this.byError.forEach((spot, place) => this.marks.push(this.mark(spot, place)));
     const on_top = (mark: SVGGElement): number =>
       Number(mark.classList.contains("on_front")) + 2 * Number(mark.classList.contains("opened"));
-    this.drawing.plot.layer.replaceChildren(...[...this.marks].sort((a, b) => on_top(a) - on_top(b)));
+    this.plot.layer.replaceChildren(...[...this.marks].sort((a, b) => on_top(a) - on_top(b)));
     if (had_focus) this.marks[this.current]?.focus();
   }
 
   private mark(spot: Spot, place: number): SVGGElement {
-    const { plot } = this.drawing;
+    const { plot } = this;
+    const [x, y] = [plot.x(spot.x), plot.y(spot.y)];
     const { on_front } = this.point(spot);
     return drawn(
       "g",
@@ -95,8 +94,8 @@ export class ChartPlot {
           this.open(spot.of);
         },
       },
-      drawn("circle", { class: "reach", cx: plot.x(spot.x), cy: plot.y(spot.y), r: 12 }),
-      this.drawing.markAt(spot, on_front ? 2 : 0),
+      drawn("circle", { class: "reach", cx: x, cy: y, r: 12 }),
+      nodeOf(markShape(spot.curve, x, y, plot.drawing, on_front ? 2 : 0)),
     );
   }
 
@@ -106,7 +105,7 @@ export class ChartPlot {
 
   /** The points about a pointer, nearest first; of those that lie together the front's. */
   private near(event: MouseEvent): Spot[] {
-    const { plot, spots } = this.drawing;
+    const { plot, spots } = this;
     const pointer = plot.pointer(event);
     return spots
       .map((at) => ({ at, far: Math.hypot(plot.x(at.x) - pointer.x, plot.y(at.y) - pointer.y) }))
@@ -128,6 +127,7 @@ export class ChartPlot {
 
   /** Left and right by error, up and down by cost. */
   private key(event: KeyboardEvent, at: Spot): void {
+    if (event.shiftKey) return;
     const along = { ArrowRight: this.byError, ArrowLeft: this.byError, ArrowUp: this.byCost, ArrowDown: this.byCost }[
       event.key
     ];

@@ -1,7 +1,8 @@
 import type { ChoiceCandidate, ChoiceFile } from "../api/results";
 import type { Workspace, WorkspaceFile } from "../api/workspace";
-import { button, element, table } from "../ui/dom";
+import { button, element, numberCell, table } from "../ui/dom";
 import { plain, withUnit } from "../ui/numbers";
+import { tableMenu } from "../ui/plot/out/export_menu";
 import type { Context } from "../ui/view";
 import { feelButton } from "./law_panel";
 import { lawBeside, stableWord } from "./names";
@@ -21,22 +22,31 @@ function title(of: ChoiceFile): string {
 function candidateTable(of: readonly ChoiceCandidate[], unit: string, ifTaken: string): HTMLElement {
   const rows = of.map((it) => [
     it.law,
-    String(it.parameters),
-    withUnit(it.held_out, unit),
-    plain(it.held_out_jnd, 2),
-    `${plain(it.tick_us, 2)} µs`,
+    numberCell(String(it.parameters), it.parameters),
+    numberCell(withUnit(it.held_out, unit), it.held_out),
+    numberCell(plain(it.held_out_jnd, 2), it.held_out_jnd),
+    numberCell(`${plain(it.tick_us, 2)} µs`, it.tick_us),
     stableWord(it.stable),
     it.passed_over || ifTaken,
   ]);
   const all = table(
     "The candidates, simplest first",
-    ["law", "free", "held out", "JND", "tick", "stable", "why passed over"],
+    [
+      "law",
+      "free",
+      ["held out", `held-out error [${unit}]`],
+      ["JND", "held-out error [JND]"],
+      ["tick", "tick [us]"],
+      "stable",
+      "why passed over",
+    ],
     rows,
   );
   return element(
     "div",
     { class: "scrolled candidates", tabindex: 0, role: "region", "aria-label": "The candidates" },
     all,
+    tableMenu(all, "candidates"),
   );
 }
 

@@ -1,12 +1,18 @@
 import type { FitFile, LawFit, LawView, Residuals } from "../api/results";
 import type { Workspace, WorkspaceFile, WorkspaceLaw } from "../api/workspace";
+import { stateKeys } from "../recording/keys";
 import { element, labelled, select } from "../ui/dom";
+import { Latest } from "../ui/latest";
 import { withUnit } from "../ui/numbers";
+import { Plot } from "../ui/plot/plot";
 import type { Context } from "../ui/view";
 import { FitTable, entanglements, parameterTable } from "./fit_table";
 import { feelButton } from "./law_panel";
 import { lawBeside, recordingsFor } from "./names";
-import { ResidualPlots } from "./residual_plots";
+import { lawMenu } from "./law_menu";
+import { atMostCompared, lawColours, type ComparedLaw } from "./compared/compared_law";
+import { Comparison } from "./compared/comparison";
+import { heldOutFigure } from "./compared/held_out";
 
 const columns = 600;
 
@@ -25,7 +31,10 @@ export class FitPage {
   readonly root: HTMLElement;
   private readonly table: FitTable;
   private readonly detail = element("section", { class: "detail", "aria-label": "The law that is looked at" });
-  private plots: ResidualPlots | null = null;
+  private readonly drawn = element("section", { class: "beside_laws", "aria-label": "Laws beside each other" });
+  private readonly errors: Plot;
+  private readonly latest: Latest;
+  private comparison: Comparison | null = null;
   private recording: string;
   private shown: WorkspaceLaw | undefined;
 
@@ -39,11 +48,17 @@ export class FitPage {
     const unit = fit.force_unit ?? "N";
     const blamed = fit.fits.find((it) => it.model === fit.choice.model)?.blame;
     this.recording = recordingsFor(workspace, of?.name ?? "")[0]?.id ?? "";
-    this.table = new FitTable(fit, (law) => this.look(law));
+    this.latest = new Latest(context.signal);
+    this.table = new FitTable(
+      fit,
+      (law) => this.pick(law),
+      () => this.choose(),
+    );
+    this.errors = new Plot(`Errors of laws: ${of?.name ?? ""}`);
     const refused = fit.refused.map((it) => `${it.model}: ${it.why}`);
-    this.root = element(
+    const compared = element(
       "div",
-      {},
+      { class: "compared" },
       element(
         "p",
         { class: "quiet" },
@@ -61,67 +76,112 @@ export class FitPage {
       blamed ? element("p", {}, element("strong", {}, "What is to blame: "), `${blamed}.`) : null,
       list("Warnings", fit.warnings, "warnings"),
       list(`${refused.length} laws could not be fitted`, refused),
-      element("p", {}, element("a", { href: "#/fits" }, "All fits")),
       this.detail,
     );
+    const errors = this.errors.figure("Errors, fitted and held out");
+    this.root = element(
+      "div",
+      { class: "fit_page" },
+      compared,
+      element("div", { class: "drawn_laws" }, this.drawn, errors),
+    );
     const first = fit.fits.find((it) => it.model === fit.choice.model) ?? fit.fits[0];
+    const asked = context.state.get(stateKeys.laws)?.split(",") ?? [];
+    const wanted = fit.fits.filter((it) => asked.includes(it.model)).map((it) => it.model);
+    this.table.tick(wanted.length > 0 ? wanted : first ? [first.model] : []);
+    this.errors.show(heldOutFigure(fit, this.table.order));
+    this.begin(of?.name ?? "");
     if (first) this.look(first);
   }
 
   end(): void {
-    this.plots?.end();
+    this.comparison?.end();
+    this.errors.end();
+    this.latest.end();
+  }
+
+  /** A law that is looked at is drawn as well. */
+  private pick(law: LawFit): void {
+    this.look(law);
+    const { ticked } = this.table;
+    if (ticked.includes(law.model)) return;
+    this.table.tick([...ticked.slice(0, atMostCompared - 1), law.model]);
+    this.choose();
+  }
+
+  /** Laws that are ticked stand in the address. */
+  private choose(): void {
+    this.context.state.set({ [stateKeys.laws]: this.table.ticked.join(",") || null }, "replace");
+    void this.compare();
+  }
+
+  private begin(name: string): void {
+    const against = select(
+      recordingsFor(this.workspace, name).map((it) => ({ value: it.id, text: it.name })),
+      this.recording,
+      (id) => {
+        this.recording = id;
+        this.begin(name);
+      },
+    );
+    this.comparison?.end();
+    this.comparison = new Comparison(this.recording, name);
+    this.drawn.replaceChildren(labelled("Over the recording", against), this.comparison.root);
+    void this.compare();
   }
 
   private look(law: LawFit): void {
     this.table.mark(law.model);
-    this.end();
-    this.plots = null;
     const file = lawBeside(this.workspace, this.file, law.law_files[0] ?? "");
     this.shown = file;
     const head = element("div", { class: "head" }, element("h2", {}, law.model));
-    if (file) head.append(feelButton(this.context, file.id, law.model), element("span", { class: "quiet" }, file.name));
+    if (file) {
+      const menu = lawMenu(this.context, file, law.model);
+      head.append(feelButton(this.context, file.id, law.model), element("span", { class: "quiet" }, file.name), menu);
+    }
     const equation = element("p", { class: "equation" }, "\u00a0");
-    const recordings = recordingsFor(this.workspace, this.fit.recordings[0]?.name ?? "");
-    const against = select(
-      recordings.map((it) => ({ value: it.id, text: it.name })),
-      this.recording,
-      (id) => {
-        this.recording = id;
-        void this.showResiduals();
-      },
-    );
     this.detail.replaceChildren(
       head,
       equation,
+      law.blame ? element("p", {}, element("strong", {}, "What is to blame: "), `${law.blame}.`) : "",
       parameterTable(law),
       list("Warnings", law.warnings, "warnings") ?? "",
       list("Parameters that cannot be told apart", entanglements(law), "warnings") ?? "",
-      labelled("Residuals in the recording", against),
     );
     if (!file) {
       this.detail.append(element("p", {}, "Its law file is not in this folder any more."));
       return;
     }
-    this.plots = new ResidualPlots(file.position_unit || "m", file.force_unit || "N");
-    this.detail.append(this.plots.root);
     this.context.api.get<LawView>("/api/law", { id: file.id }).then((it) => {
       if (this.shown === file) equation.textContent = it.equation;
     }, this.context.complain);
-    void this.showResiduals();
   }
 
-  private async showResiduals(): Promise<void> {
-    const { shown, plots, recording } = this;
+  private async compare(): Promise<void> {
+    const { recording, comparison } = this;
     const axis = this.fit.recordings[0]?.axis ?? "";
-    if (!shown || !plots || !recording) return;
+    const laws = this.table.ticked.flatMap((model, k) => {
+      const file = lawBeside(
+        this.workspace,
+        this.file,
+        this.fit.fits.find((it) => it.model === model)?.law_files[0] ?? "",
+      );
+      return file && recording ? [{ model, colour: lawColours[k]!, file }] : [];
+    });
     try {
-      const of = await this.context.api.get<Residuals>("/api/residuals", {
-        id: recording,
-        axis,
-        law: shown.id,
-        columns,
-      });
-      if (this.plots === plots && this.recording === recording) plots.show(of);
+      const found = await this.latest.ask((signal) =>
+        Promise.all(
+          laws.slice(0, atMostCompared).map(async ({ model, colour, file }): Promise<ComparedLaw> => {
+            const wanted = { id: recording, axis, law: file.id, columns };
+            return {
+              model,
+              colour,
+              residuals: await this.context.api.get<Residuals>("/api/residuals", wanted, signal),
+            };
+          }),
+        ),
+      );
+      if (found && this.comparison === comparison) comparison?.show(found);
     } catch (error) {
       this.context.complain(error);
     }

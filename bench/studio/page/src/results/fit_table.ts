@@ -1,6 +1,10 @@
-import type { FitFile, LawFit } from "../api/results";
-import { element } from "../ui/dom";
+import type { Estimate, FitFile, LawFit } from "../api/results";
+import { button, element, numberCell } from "../ui/dom";
 import { plain, withUnit } from "../ui/numbers";
+import { csvOf, type CsvColumn } from "../ui/plot/out/csv_file";
+import { download, fileName } from "../ui/plot/out/download";
+import { tableMenu } from "../ui/plot/out/export_menu";
+import { atMostCompared } from "./compared/compared_law";
 import { intervalBar, intervalOf, reachOf } from "./interval_bar";
 
 const maxShown = 40;
@@ -20,8 +24,9 @@ export function choiceMark(file: FitFile): string {
   return within ? "simplest within the JND" : "as good as the best, not within the JND";
 }
 
-function head(text: string, number = true): HTMLTableCellElement {
-  return element("th", { scope: "col", ...(number ? { class: "number" } : {}) }, text);
+/** `file`: what the head is called in a file, with its unit. */
+function head(text: string, number = true, file = text): HTMLTableCellElement {
+  return element("th", { scope: "col", "data-head": file, ...(number ? { class: "number" } : {}) }, text);
 }
 
 function cell(text: string): HTMLTableCellElement {
@@ -33,9 +38,17 @@ export class FitTable {
   readonly root: HTMLElement;
   private readonly rows = new Map<string, HTMLTableRowElement>();
 
-  constructor(file: FitFile, choose: (fit: LawFit) => void) {
+  /** The laws as they stand, the least error first. */
+  readonly order: readonly LawFit[];
+  private readonly boxes = new Map<string, HTMLInputElement>();
+
+  constructor(
+    file: FitFile,
+    choose: (fit: LawFit) => void,
+    private readonly compared: () => void,
+  ) {
     const unit = file.force_unit ?? "N";
-    const sorted = [...file.fits].sort((a, b) => errorOf(a) - errorOf(b));
+    const sorted = (this.order = [...file.fits].sort((a, b) => errorOf(a) - errorOf(b)));
     const body = element("tbody");
     for (const fit of sorted) {
       const open = element("button", { type: "button", class: "link", click: () => choose(fit) }, fit.model);
@@ -43,48 +56,74 @@ export class FitTable {
         fit.model === file.choice.model ? choiceMark(file) : "",
         fit.converged ? "" : "did not converge",
       ].filter(Boolean);
+      const box = element("input", {
+        type: "checkbox",
+        "aria-label": `Draw ${fit.model}`,
+        change: () => this.ticking(box),
+      });
+      this.boxes.set(fit.model, box);
       const row = element(
         "tr",
         {},
+        element("td", {}, box),
         element("th", { scope: "row" }, open),
-        cell(String(fit.free_parameters)),
-        cell(withUnit(fit.rmse, unit)),
-        cell(withUnit(fit.cv_rmse, unit)),
-        cell(withUnit(fit.cv_rmse_rendered, unit)),
-        cell(plain(errorOf(fit) / file.jnd, 2)),
-        cell(fit.bic.toFixed(0).replace("-", "−")),
+        numberCell(String(fit.free_parameters), fit.free_parameters),
+        numberCell(withUnit(fit.rmse, unit), fit.rmse),
+        numberCell(withUnit(fit.cv_rmse, unit), fit.cv_rmse),
+        numberCell(withUnit(fit.cv_rmse_rendered, unit), fit.cv_rmse_rendered),
+        numberCell(plain(errorOf(fit) / file.jnd, 2), errorOf(fit) / file.jnd),
+        numberCell(fit.bic.toFixed(0).replace("-", "−"), fit.bic),
         element("td", {}, marks.join(", ")),
       );
       row.classList.toggle("taken", fit.model === file.choice.model);
       this.rows.set(fit.model, row);
       body.append(row);
     }
+    const table = element(
+      "table",
+      { class: "fits" },
+      element("caption", {}, "Laws compared"),
+      element(
+        "thead",
+        {},
+        element(
+          "tr",
+          {},
+          head("draw", false, ""),
+          head("law", false),
+          head("free", true, "free parameters"),
+          head("error", true, `error [${unit}]`),
+          head("held out", true, `held-out error [${unit}]`),
+          head("as rendered", true, `held-out error as rendered [${unit}]`),
+          head("in JNDs", true, "error [JND]"),
+          head("BIC"),
+          head("", false, "remarks"),
+        ),
+      ),
+      body,
+    );
     this.root = element(
       "div",
-      { class: "scrolled" },
-      element(
-        "table",
-        { class: "fits" },
-        element("caption", {}, "Laws compared"),
-        element(
-          "thead",
-          {},
-          element(
-            "tr",
-            {},
-            head("law", false),
-            head("free"),
-            head("error"),
-            head("held out"),
-            head("as rendered"),
-            head("in JNDs"),
-            head("BIC"),
-            head("", false),
-          ),
-        ),
-        body,
-      ),
+      {},
+      element("div", { class: "scrolled" }, table),
+      tableMenu(table, `fits-${file.recordings[0]?.name ?? ""}`),
     );
+  }
+
+  /** The laws that are drawn, in the order of the table. */
+  get ticked(): string[] {
+    return this.order.map((it) => it.model).filter((it) => this.boxes.get(it)?.checked);
+  }
+
+  tick(models: readonly string[]): void {
+    for (const [model, box] of this.boxes) box.checked = models.includes(model);
+  }
+
+  /** One is drawn always, and not more than can be told apart. */
+  private ticking(box: HTMLInputElement): void {
+    const count = this.ticked.length;
+    if (count === 0 || count > atMostCompared) box.checked = !box.checked;
+    else this.compared();
   }
 
   mark(model: string): void {
@@ -122,35 +161,62 @@ export function parameterTable(fit: LawFit): HTMLElement {
       "tr",
       {},
       element("th", { scope: "row" }, parameter),
-      cell(estimate.value.toPrecision(5)),
+      numberCell(estimate.value.toPrecision(5), estimate.value),
       element("td", {}, estimate.unit),
       cell(interval),
       element("td", {}, intervalBar(estimate, reach)),
     );
   });
   const more = all.length - maxShown;
+  const table = element(
+    "table",
+    {},
+    element("caption", {}, `Parameters of ${fit.model}`),
+    element(
+      "thead",
+      {},
+      element(
+        "tr",
+        {},
+        head("parameter", false),
+        head("value"),
+        head("unit", false),
+        head(`${name} % interval`),
+        head(`−${100 * reach} % to +${100 * reach} %`, false, ""),
+      ),
+    ),
+    element("tbody", {}, ...rows),
+  );
+  const save = button(
+    "Save CSV",
+    () => download(csvOf(parameterColumns(all, name)), fileName(`parameters ${fit.model}`, "csv")),
+    {
+      class: "small",
+      "aria-label": `Save the parameters of ${fit.model} as CSV`,
+    },
+  );
   return element(
     "div",
-    { class: "scrolled", tabindex: 0, role: "region", "aria-label": `Parameters of ${fit.model}` },
+    {},
     element(
-      "table",
-      {},
-      element("caption", {}, `Parameters of ${fit.model}`),
-      element(
-        "thead",
-        {},
-        element(
-          "tr",
-          {},
-          head("parameter", false),
-          head("value"),
-          head("unit", false),
-          head(`${name} % interval`),
-          head(`−${100 * reach} % to +${100 * reach} %`, false),
-        ),
-      ),
-      element("tbody", {}, ...rows),
+      "div",
+      { class: "scrolled", tabindex: 0, role: "region", "aria-label": table.caption?.textContent ?? "" },
+      table,
     ),
     more > 0 ? element("p", { class: "quiet" }, `and ${more} more, in the law file`) : null,
+    save,
   );
+}
+
+/** All of them, with their ends apart. */
+function parameterColumns(all: readonly [string, Estimate][], name: string): CsvColumn[] {
+  const interval = all.map(([, it]) => intervalOf(it));
+  return [
+    { head: "parameter", cells: all.map(([it]) => it) },
+    { head: "value", cells: all.map(([, it]) => it.value) },
+    { head: "unit", cells: all.map(([, it]) => it.unit) },
+    { head: "standard error", cells: all.map(([, it]) => it.std_error) },
+    { head: `lower end of ${name} %`, cells: interval.map((it) => it.lower) },
+    { head: `upper end of ${name} %`, cells: interval.map((it) => it.upper) },
+  ];
 }

@@ -1,26 +1,9 @@
-import type { Job } from "../api/results";
+import type { Job } from "../api/jobs";
+import { inWords, resultAddress } from "../jobs/job_words";
 import { button, element } from "../ui/dom";
 import type { Context } from "../ui/view";
 
 const every_ms = 500;
-
-/** Which page shows the result of a job. */
-const views: Record<Job["kind"], string> = { fit: "fits", chart: "chart", choice: "chart", stability: "stability" };
-
-function inWords(job: Job): string {
-  switch (job.state) {
-    case "waiting":
-      return "waits for its turn";
-    case "running":
-      return job.share >= 0 ? `${Math.round(100 * job.share)} %` : "at work";
-    case "done":
-      return "done";
-    case "stopped":
-      return "stopped";
-    case "failed":
-      return job.error;
-  }
-}
 
 /** One job: its title, how far it is, and a button to stop it. Rebuilt by nobody, so that focus stays. */
 class JobLine {
@@ -41,7 +24,7 @@ class JobLine {
     else this.bar.value = job.state === "done" ? 1 : Math.max(0, job.share);
     if (job.state === "done" && job.file) {
       if (!this.words.querySelector("a"))
-        this.words.replaceChildren(element("a", { href: `#/${views[job.kind]}/${job.file}` }, "Open the result"));
+        this.words.replaceChildren(element("a", { href: resultAddress(job) }, "Open the result"));
     } else {
       this.words.textContent = inWords(job);
     }

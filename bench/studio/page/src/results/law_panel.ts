@@ -2,7 +2,8 @@ import type { LawView } from "../api/results";
 import { button, element, table } from "../ui/dom";
 import { plain, withUnit } from "../ui/numbers";
 import type { Context } from "../ui/view";
-import { XyPlot } from "../ui/xy_plot";
+import { figureOf, lineOf } from "../ui/figure_description";
+import { Plot } from "../ui/plot/plot";
 
 const maxShown = 24;
 
@@ -48,7 +49,7 @@ function parameterTable(law: LawView): HTMLElement {
 /** One law: what it is, its curve, its parameters, and a way to feel it. */
 export class LawPanel {
   readonly root = element("section", { class: "card law", "aria-label": "Law" });
-  private plot: XyPlot | null = null;
+  private plot: Plot | null = null;
   private shown = "";
 
   constructor(private readonly context: Context) {
@@ -92,24 +93,21 @@ export class LawPanel {
     const options = optionsInWords(law);
     if (options) this.root.append(element("p", { class: "quiet" }, options));
     if (law.curve.penetration.length > 0) {
-      this.plot = new XyPlot(
-        { label: `penetration [${unit}]` },
-        { label: `force [${law.force_unit}]` },
-        `Force of ${title} over penetration`,
+      const { penetration, closing, opening, speed, range } = law.curve;
+      this.plot = new Plot(`Force of ${title} over penetration`);
+      this.plot.show(
+        figureOf(`penetration [${unit}]`, `force [${law.force_unit}]`, {
+          curves: [
+            lineOf("in", penetration, closing, { dashed: true, width: 2.5 }),
+            lineOf("out", penetration, opening, { dashed: true, width: 1.25 }),
+          ],
+          notes: [`In and out at ${withUnit(speed, `${unit}/s`)}, to ${range}.`],
+        }),
       );
-      const lines = [
-        { x: law.curve.penetration, y: law.curve.closing, class: "closing" },
-        { x: law.curve.penetration, y: law.curve.opening, class: "opening" },
-      ];
       this.root.append(
-        element("div", { class: "plot small" }, this.plot.svg),
-        element(
-          "p",
-          { class: "quiet" },
-          `In (solid) and out (dashed) at ${withUnit(law.curve.speed, `${unit}/s`)}, to ${law.curve.range}.`,
-        ),
+        this.plot.figure(),
+        element("p", { class: "quiet" }, `In and out at ${withUnit(speed, `${unit}/s`)}, to ${range}.`),
       );
-      this.plot.show(lines, XyPlot.around(lines));
     } else {
       this.root.append(element("p", { class: "quiet" }, law.curve.range));
     }

@@ -71,7 +71,7 @@ export function stabilityForm(context: Context, workspace: Workspace, chosen: st
       "div",
       { class: "row" },
       labelled(
-        "Of",
+        "Map of",
         select(
           [
             { value: "", text: "walls, over stiffness and damping" },

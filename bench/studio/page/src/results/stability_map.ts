@@ -1,13 +1,14 @@
 import type { StabilityFile } from "../api/results";
 import type { Figure } from "../ui/figure_description";
 import { drawn, element } from "../ui/dom";
-import { FigurePlot } from "../ui/figure";
 import { withUnit } from "../ui/numbers";
+import { cellAt, cellBox } from "../ui/plot/cells";
+import { Plot } from "../ui/plot/plot";
 
 /** A map's figure; the cell under the cursor, or that the arrow keys lead to, is read out. */
 export class StabilityMap {
   readonly root: HTMLElement;
-  private readonly drawing: FigurePlot;
+  private readonly plot: Plot;
   private readonly readout = element(
     "p",
     { class: "readout", role: "status" },
@@ -19,34 +20,29 @@ export class StabilityMap {
 
   constructor(
     private readonly file: StabilityFile,
-    figure: Figure,
+    private readonly figure: Figure,
     name: string,
   ) {
-    this.drawing = new FigurePlot(figure, name, () => this.showCursor());
-    const { svg } = this.drawing.plot;
-    svg.setAttribute("tabindex", "0");
+    this.plot = new Plot(name, { ownArrows: true, redrawn: () => this.showCursor() });
+    const { svg } = this.plot;
     svg.setAttribute("role", "application");
     svg.setAttribute("aria-roledescription", "map; arrow keys go from cell to cell");
     svg.addEventListener("pointermove", (event) => this.under(event));
     svg.addEventListener("keydown", (event) => this.key(event));
-    this.root = element(
-      "figure",
-      { class: "card figure map" },
-      element("div", { class: "plot" }, svg),
-      this.readout,
-      this.drawing.legend,
-    );
+    this.root = this.plot.figure();
+    this.root.classList.add("map");
+    this.plot.reading.replaceWith(this.readout);
     if (figure.cells.x_edges.length === 0) this.readout.textContent = "";
-    this.drawing.plot.layer.append(this.cursor);
-    this.drawing.show();
+    this.plot.layer.append(this.cursor);
+    this.plot.show(figure);
   }
 
   end(): void {
-    this.drawing.end();
+    this.plot.end();
   }
 
   private under(event: PointerEvent): void {
-    const { plot, figure } = this.drawing;
+    const { plot, figure } = this;
     const at = plot.pointer(event);
     const place = (value: number, edges: readonly number[]): number =>
       edges.findIndex((edge, i) => value >= edge && value <= (edges[i + 1] ?? -Infinity));
@@ -57,9 +53,9 @@ export class StabilityMap {
 
   private key(event: KeyboardEvent): void {
     const step = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [1, 0], ArrowDown: [-1, 0] }[event.key];
-    if (!step) return;
+    if (!step || event.shiftKey) return;
     event.preventDefault();
-    const { x_edges, y_edges } = this.drawing.figure.cells;
+    const { x_edges, y_edges } = this.figure.cells;
     const rows = y_edges.length - 1;
     const columns = x_edges.length - 1;
     if (rows < 1 || columns < 1) return;
@@ -74,13 +70,13 @@ export class StabilityMap {
     if (row === this.row && column === this.column) return;
     this.row = row;
     this.column = column;
-    this.readout.textContent = cellInWords(this.file, this.drawing.cellAt(column, row));
+    this.readout.textContent = cellInWords(this.file, cellAt(this.figure.cells, column, row));
     this.showCursor();
   }
 
   private showCursor(): void {
     if (this.row < 0) return;
-    for (const [name, value] of Object.entries(this.drawing.cellBox(this.column, this.row)))
+    for (const [name, value] of Object.entries(cellBox(this.figure.cells, this.plot.frame, this.column, this.row)))
       this.cursor.setAttribute(name, String(value));
   }
 }

@@ -11,6 +11,7 @@ export class LiveColumns {
   period_s = 1e-3;
   private newest = -1; // the column at the end of the arrays; -1: none yet
   private run: number | undefined; // of which loop they are
+  private first = Infinity; // the oldest column that anything was told of
 
   constructor(
     readonly traces: number,
@@ -26,6 +27,20 @@ export class LiveColumns {
 
   get column_s(): number {
     return this.ticks * this.period_s;
+  }
+
+  /** When the oldest column begins that anything was told of. */
+  get firstTick_s(): number {
+    return this.first === Infinity ? Infinity : this.first * this.column_s;
+  }
+
+  /** Numbers of the columns at both ends of the arrays: column k begins at k column_s. */
+  get newestColumn(): number {
+    return this.newest;
+  }
+
+  get oldestColumn(): number {
+    return this.newest - this.capacity + 1;
   }
 
   /** Where the newest column ends. */
@@ -50,6 +65,7 @@ export class LiveColumns {
     this.period_s = frame.period_s;
     if (this.newest < 0) this.newest = first - 1;
     this.advance(first + columns - 1);
+    this.first = Math.min(this.first, first);
     const at = this.capacity - 1 - this.newest + first;
     for (let trace = 0; trace < this.traces; ++trace) {
       const [smallest, largest] = [frame.smallest[trace], frame.largest[trace]];
@@ -68,6 +84,7 @@ export class LiveColumns {
     this.period_s = other.period_s;
     this.run = other.run;
     this.newest = Math.ceil(((other.newest + 1) * other.ticks) / this.ticks) - 1;
+    if (other.first < Infinity) this.first = Math.ceil((other.first * other.ticks) / this.ticks);
     this.setTimes();
     for (let k = 0; k < other.capacity; ++k) {
       const tick = (other.newest - other.capacity + 1 + k) * other.ticks;

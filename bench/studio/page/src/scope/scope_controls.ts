@@ -9,6 +9,8 @@ export class ScopeControls {
   readonly root: HTMLElement;
   private status: LoopStatus | null = null;
   private laws: Workspace["laws"] = [];
+  private saved = ""; // the recording that has just ended
+  private folder: Workspace | null = null;
   private suited = ""; // the axes that the list is for
   private readonly device = element("input", { type: "text", autocomplete: "off", spellcheck: "false" });
   private readonly sensor = element("input", {
@@ -35,6 +37,10 @@ export class ScopeControls {
   private readonly state = element("p", { class: "ended", role: "status" });
 
   constructor(private readonly context: Context) {
+    context.onFolder((workspace) => {
+      this.folder = workspace;
+      if (this.saved !== "") this.showSaved();
+    });
     this.root = element(
       "div",
       { class: "controls" },
@@ -94,8 +100,14 @@ export class ScopeControls {
     this.record.setAttribute("aria-label", status.recording ? "Stop recording" : "Record");
     this.record.classList.toggle("firm", status.recording !== null);
     this.name.disabled = !status.running || status.recording !== null;
-    if (before?.recording && !status.recording) this.name.value = nameOfNow();
-    put(this.recorded, recordedText(status));
+    if (before?.recording && !status.recording) {
+      this.name.value = nameOfNow();
+      this.saved = before.recording.name;
+      this.context.lookAtFolder();
+    }
+    if (status.recording || status.recording_failure) this.saved = "";
+    if (this.saved === "") put(this.recorded, recordedText(status));
+    else this.showSaved();
     this.recorded.classList.toggle("alarming", status.recording_failure !== "");
     put(this.state, stateText(status));
   }
@@ -112,6 +124,15 @@ export class ScopeControls {
       option.textContent = lacking ? `${law.name} (for ${lacking})` : law.name;
       if (option.disabled && option.selected) this.law.value = "";
     }
+  }
+
+  /** Where the recording is, as a way to its page once it is in the folder's list. */
+  private showSaved(): void {
+    const text = `Saved as ${this.saved}`;
+    const id = this.folder?.recordings.find((it) => it.name === this.saved)?.id;
+    if (this.recorded.dataset.saved === `${text} ${id ?? ""}`) return;
+    this.recorded.dataset.saved = `${text} ${id ?? ""}`;
+    this.recorded.replaceChildren(id ? element("a", { href: `#/recording/${id}/time` }, text) : text);
   }
 
   private startOrStop(): void {

@@ -5,22 +5,37 @@ import { StretchLoader } from "../ui/time/stretch_loader";
 import { TimeStack } from "../ui/time/time_stack";
 import type { TimeLine } from "../ui/time/time_line";
 import { LiveColumns, ticksInColumn } from "./live_columns";
+import { beforeTrigger, TriggerFinder, type TriggerSettings } from "./trigger";
 import { emptyLine, plotsOf, takeView } from "../recordings/trace_groups";
 
 const kept_s = 60; // that the server keeps
+const labels = {
+  running: "time before now [s]",
+  ended: "time before the end [s]",
+  paused: "time from the pause [s]",
+  triggered: "time from the trigger [s]",
+};
 
-/** The running loop's picture: newest columns while it runs, any stretch of the last minute when paused. */
+/**
+ * The running loop's picture: newest columns while it runs, the last window that triggered, or any stretch of the last
+ * minute when paused.
+ */
 export class ScopePicture {
   readonly stack: TimeStack;
   paused = false;
   private traces: readonly Trace[] = [];
   private chosen: number[] = []; // traces that are shown
-  private lines: TimeLine[] = [];
+  lines: TimeLine[] = [];
   private columns: LiveColumns | null = null;
   private window_s = 5;
   private rate_hz = 1000;
   private ticks = 0; // that the loop had done when its traces were asked for
   private lastZoom = 0;
+  private trigger: TriggerSettings = { mode: "off", trace: -1, level: 0, edge: "rising" };
+  private readonly finder = new TriggerFinder();
+  private frozen: number | null = null; // the time of the trigger whose window is shown
+  private frozenAt = 0; // when it was found [ms of the page]
+  private ended = false;
   private readonly loader: StretchLoader;
 
   constructor(
@@ -29,11 +44,18 @@ export class ScopePicture {
     private readonly restream: (ticks: number) => void,
     zoomed: (factor: number) => void,
     complain: (error: unknown) => void,
+    /** What is seen has changed. */
+    private readonly drawn: () => void,
+    /** A window was found, or none for a while (null). */
+    private readonly triggered: (at: number | null) => void,
   ) {
     this.stack = new TimeStack({
       name: "The running loop over time",
-      timeLabel: "time before now [s]",
-      changed: (range) => this.paused && this.loader.want(range, this.stack.columns),
+      timeLabel: labels.running,
+      changed: (range) => {
+        if (this.paused) this.loader.want(range, this.stack.columns);
+        this.drawn();
+      },
       zoomedWhileFollowing: (factor) => {
         if (performance.now() - this.lastZoom < 250) return;
         this.lastZoom = performance.now();
@@ -49,6 +71,7 @@ export class ScopePicture {
         if (!this.paused || view.time.length === 0) return;
         this.lines.forEach((line, k) => takeView(line, view, k, 1 / this.rate_hz));
         this.stack.draw();
+        this.drawn();
       },
       complain,
     );
@@ -93,7 +116,70 @@ export class ScopePicture {
     if (!columns || frame.ticks !== columns.ticks) return; // of a stream that is closed
     if (frame.smallest.length !== this.traces.length) return; // of a loop whose traces are not known yet
     if (!columns.push(frame)) return this.restart();
+    if (this.paused) return;
+    const at = this.trigger.mode === "off" ? null : this.finder.look(columns, this.trigger, this.window_s);
+    if (at !== null) this.freeze(at);
+    else if (this.isWaiting) this.follow();
+  }
+
+  /** When its window begins; from now on. */
+  setTrigger(trigger: TriggerSettings): void {
+    this.trigger = trigger;
+    this.thaw();
     if (!this.paused) this.follow();
+  }
+
+  /** The loop has ended: what is seen is its end and nothing that runs. */
+  setEnded(ended: boolean): void {
+    if (this.ended === ended) return;
+    this.ended = ended;
+    if (!this.paused && this.frozen === null) this.follow();
+  }
+
+  /** Before it nothing is known: the loop, or what is kept of it, had not begun. */
+  get firstTick_s(): number {
+    return this.columns?.firstTick_s ?? 0;
+  }
+
+  get period_s(): number {
+    return 1 / this.rate_hz;
+  }
+
+  /** Whether time runs in the picture though it is to trigger: until the first, and in auto where there is none. */
+  private get isWaiting(): boolean {
+    if (this.frozen === null) return true;
+    return this.trigger.mode === "auto" && performance.now() - this.frozenAt > 1000 * Math.max(1, 2 * this.window_s);
+  }
+
+  /** Shows the window about a trigger, until the next. */
+  private freeze(at: number): void {
+    const { range, shared } = this.stack;
+    this.attach();
+    this.keepLines();
+    this.frozen = at;
+    this.frozenAt = performance.now();
+    range.follow(at + (1 - beforeTrigger) * this.window_s, this.window_s);
+    shared.origin_s = at;
+    shared.timeLabel = labels.triggered;
+    this.stack.draw();
+    this.drawn();
+    this.triggered(at);
+    if (this.trigger.mode === "single") this.pause();
+  }
+
+  private thaw(): void {
+    this.finder.reset();
+    if (this.frozen !== null) this.triggered(null);
+    this.frozen = null;
+    if (!this.paused) this.attach();
+  }
+
+  private keepLines(): void {
+    for (const line of this.lines) {
+      line.time = line.time.slice();
+      line.smallest = line.smallest.slice();
+      line.largest = line.largest.slice();
+    }
   }
 
   /** Another loop has begun: nothing of the last one is shown. */
@@ -111,14 +197,10 @@ export class ScopePicture {
     if (this.paused || !this.columns) return;
     this.paused = true;
     const { range, shared } = this.stack;
-    for (const line of this.lines) {
-      line.time = line.time.slice();
-      line.smallest = line.smallest.slice();
-      line.largest = line.largest.slice();
-    }
+    this.keepLines();
     range.following = false;
     range.bound(Math.max(0, range.to - kept_s), Math.max(range.to, this.window_s), 10 / this.rate_hz);
-    shared.timeLabel = "time from the pause [s]";
+    if (this.frozen === null) shared.timeLabel = labels.paused;
     this.stack.draw();
     this.loader.want(range, this.stack.columns);
   }
@@ -127,18 +209,20 @@ export class ScopePicture {
     if (!this.paused) return;
     this.paused = false;
     this.stack.range.following = true;
-    this.stack.shared.timeLabel = "time before now [s]";
-    this.attach();
+    this.thaw();
     this.follow();
   }
 
   private follow(): void {
     if (!this.columns) return;
     const { range, shared } = this.stack;
+    if (this.frozen !== null) this.thaw();
+    shared.timeLabel = this.ended ? labels.ended : labels.running;
     range.follow(this.columns.end_s, this.window_s);
     shared.origin_s = range.to;
     for (const line of this.lines) line.step_s = this.columns.column_s;
     this.stack.draw();
+    this.drawn();
   }
 
   private ticksWanted(): number {
@@ -148,12 +232,13 @@ export class ScopePicture {
   /** New columns for another window or width, with what the old ones hold; the stream tells the past again. */
   private renew(old: LiveColumns | null): void {
     const ticks = this.ticksWanted();
-    const capacity = Math.ceil((this.window_s * this.rate_hz) / ticks) + 3;
+    // Half as much again: the window about a trigger lies a little behind the newest column.
+    const capacity = Math.ceil((1.5 * this.window_s * this.rate_hz) / ticks) + 3;
     this.columns = new LiveColumns(this.traces.length, ticks, capacity);
     this.columns.period_s = 1 / this.rate_hz;
     if (old) this.columns.takeFrom(old);
     else this.columns.beginAt(this.ticks);
-    if (!this.paused) this.attach();
+    this.thaw();
     this.restream(ticks);
   }
 

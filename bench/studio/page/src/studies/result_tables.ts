@@ -54,7 +54,17 @@ function quantities(groups: readonly StudiedGroup[]): HTMLElement {
 }
 
 function comparisons(all: readonly StudiedComparison[]): HTMLElement {
-  const heads = ["Of", "First", "Second", "Verdict", "n", "First to second (95 %)", "Hedges' g", "p", "p by Holm"];
+  const heads = [
+    "Quantity",
+    "First",
+    "Second",
+    "Verdict",
+    "n",
+    "First to second (95 %)",
+    "Hedges' g",
+    "p",
+    "p by Holm",
+  ];
   const rows = all.map((it) => [
     it.quantity,
     it.first,

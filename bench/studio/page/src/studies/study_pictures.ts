@@ -1,18 +1,16 @@
 import type { DrawerRecording, Study } from "../api/studies";
 import { element } from "../ui/dom";
 import type { Figure } from "../ui/figure_description";
-import { onColours } from "../ui/palette";
 import type { Context } from "../ui/view";
-import { SmallPlot } from "./small_plot";
+import { Plot } from "../ui/plot/plot";
 
 const atMost = 60;
 
 /** Every recording of a drawer as a small picture: force over penetration, what counts, is flagged and is idle. */
 export class StudyPictures {
   readonly root: HTMLElement;
-  private readonly plots: SmallPlot[] = [];
+  private readonly plots: Plot[] = [];
   private readonly gone = new AbortController();
-  private readonly endColours = onColours(() => this.plots.forEach((it) => it.draw()));
 
   constructor(
     private readonly context: Context,
@@ -33,7 +31,7 @@ export class StudyPictures {
 
   end(): void {
     this.gone.abort();
-    this.endColours();
+    for (const it of this.plots) it.end();
   }
 
   /** One after the other: a page that asks for something else meanwhile is not held up. */
@@ -42,9 +40,13 @@ export class StudyPictures {
       try {
         const asked = { id: this.study.id, name: it.name };
         const figure = await this.context.api.get<Figure>("/api/study/drawn", asked, this.gone.signal);
-        const plot = new SmallPlot(figure, it.name);
+        const counts = figure.curves.map((curve) => `${curve.x.length} ${curve.label}`).join(", ");
+        const name = `${it.name}: ${figure.y_label} over ${figure.x_label}; points: ${counts}`;
+        const plot = new Plot(name, { small: true, file: it.name });
         this.plots.push(plot);
-        box.replaceChildren(plot.root);
+        plot.svg.classList.add("small_plot");
+        plot.show(figure);
+        box.replaceChildren(plot.svg, plot.menu());
         box.title = `${figure.y_label} over ${figure.x_label}`;
       } catch (error) {
         if (this.gone.signal.aborted) return;

@@ -55,13 +55,31 @@ export function select(
   return node;
 }
 
-/** A table with a header row; numbers are right-aligned by the class "number". */
-export function table(caption: string, heads: string[], rows: (Node | string)[][]): HTMLTableElement {
+/** What a column is called, and in a file, where it has its unit. */
+export type Head = string | readonly [here: string, file: string];
+
+/** A table with a header row; cells of numberCell() stand as they are. */
+export function table(caption: string, heads: readonly Head[], rows: (Node | string)[][]): HTMLTableElement {
   return element(
     "table",
     {},
     element("caption", {}, caption),
-    element("thead", {}, element("tr", {}, ...heads.map((it) => element("th", { scope: "col" }, it)))),
-    element("tbody", {}, ...rows.map((row) => element("tr", {}, ...row.map((cell) => element("td", {}, cell))))),
+    element("thead", {}, element("tr", {}, ...heads.map(headCell))),
+    element("tbody", {}, ...rows.map((row) => element("tr", {}, ...row.map(cellOf)))),
   );
+}
+
+/** A cell whose number files have to its last digit, whatever it is rounded to here. */
+export function numberCell(text: string, value: number | null | undefined): HTMLTableCellElement {
+  const known = value != null && Number.isFinite(value);
+  return element("td", { class: "number", "data-value": known ? String(value) : "" }, text);
+}
+
+function headCell(head: Head): HTMLTableCellElement {
+  if (typeof head === "string") return element("th", { scope: "col" }, head);
+  return element("th", { scope: "col", "data-head": head[1] }, head[0]);
+}
+
+function cellOf(cell: Node | string): HTMLTableCellElement {
+  return cell instanceof HTMLTableCellElement ? cell : element("td", {}, cell);
 }

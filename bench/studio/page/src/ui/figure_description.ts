@@ -1,15 +1,31 @@
-// A figure as the server describes it, in print and here: bench/figures/plot/chart_json.h.
+// A figure as it is described, for the screen, for print and as a table: bench/figures/plot/chart_json.h has what the server
+// sends; areas and notes are the page's own.
 
 export type Colour = "black" | "blue" | "vermillion" | "green" | "purple" | "orange" | "sky" | "yellow" | "grey";
+export type Numbers = readonly (number | null)[];
 export interface FigureCurve {
   label: string; // empty: not in the legend
-  x: (number | null)[]; // null breaks a line
-  y: (number | null)[];
+  x: Numbers; // null breaks a line
+  y: Numbers;
   colour: Colour;
-  mark: "line" | "points" | "circles" | "crosses";
+  mark: "line" | "points" | "circles" | "crosses" | "steps" | "boxes";
   width: number;
-  dashed: boolean;
-  of: number[]; // the number of what each point stands for; empty: of nothing
+  dashed: boolean; // laws and theories; what was measured is solid
+  of: readonly number[]; // the number of what each point stands for; empty: of nothing
+  name?: string; // of its column in a table, where the label does not say it
+  marked?: boolean; // with its colour's shape along it, so that not the colour alone tells it from others
+}
+/** What lies between two lines over x; null breaks it. */
+export interface FigureArea {
+  label: string; // empty: not in the legend
+  x: Numbers;
+  low: Numbers;
+  high: Numbers;
+  colour: Colour;
+  /** What was measured, from the smallest to the largest value of a stretch: as solid as a line. Else a faint band. */
+  extremes?: boolean;
+  name?: string;
+  marked?: boolean;
 }
 export interface FigureCells {
   x_edges: number[];
@@ -31,18 +47,38 @@ export interface FigureLabel {
   text_x: number | null; // where the text begins, or ends if it is left; null: beside the point
   text_y: number | null;
 }
-/** What the server sends of chart_to_json() in bench/figures/plot. */
+export interface FigureTick {
+  at: number | null;
+  name: string;
+}
 export interface Figure {
   title?: string;
-  x_label: string;
+  x_label: string; // with its unit: "time [s]"
   y_label: string;
   curves: FigureCurve[];
+  areas?: FigureArea[];
+  bands?: { begin: number | null; end: number | null; colour: Colour }[]; // of x
   cells: FigureCells;
   vertical: FigureMarker[];
   horizontal: FigureMarker[];
   labels: FigureLabel[];
+  x_ticks?: FigureTick[]; // in place of numbers
+  y_ticks?: FigureTick[];
   x_range: [number, number] | null; // null: what the curves need
   y_range: [number, number] | null;
   log_x: boolean;
   log_y: boolean;
+  notes?: string[]; // what a file says of its numbers
+}
+
+const nothing = { x_edges: [], y_edges: [], upwards: false, kinds: [], kind: [] };
+
+/** A figure of the page's own. */
+export function figureOf(x_label: string, y_label: string, more: Partial<Figure>): Figure {
+  const empty = { curves: [], vertical: [], horizontal: [], labels: [], x_range: null, y_range: null };
+  return { x_label, y_label, cells: nothing, log_x: false, log_y: false, ...empty, ...more };
+}
+
+export function lineOf(label: string, x: Numbers, y: Numbers, more: Partial<FigureCurve> = {}): FigureCurve {
+  return { label, x, y, colour: "blue", mark: "line", width: 2, dashed: false, of: [], ...more };
 }

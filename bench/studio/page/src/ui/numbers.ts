@@ -29,8 +29,16 @@ export function plain(value: number | null | undefined, digits = 3): string {
   return value.toLocaleString("en-GB", { maximumSignificantDigits: digits, useGrouping: false }).replace("-", "−");
 }
 
-/** The prefix that suits an axis reaching to `largest`: value / factor is a number of `text`. */
+/** Degrees, as the charts of `kerf report` have them, in place of radians. */
+const drawnUnits: Readonly<Record<string, string>> = { rad: "deg", "rad/s": "deg/s" };
+
+/**
+ * The unit or prefix that suits an axis reaching to `largest`: value / factor is a number of `text`. Angles are in
+ * degrees, whatever their size.
+ */
 export function unitFor(largest: number, unit: string): { factor: number; text: string } {
+  const drawn = drawnUnits[unit];
+  if (drawn !== undefined) return { factor: Math.PI / 180, text: drawn };
   const size = Math.abs(largest);
   if (!takesPrefix(unit) || !(size > 0) || !Number.isFinite(size)) return { factor: 1, text: unit === "1" ? "" : unit };
   const [factor, prefix] = prefixes.find(([it]) => size >= it * 0.9995) ?? [1e-9, "n"];
@@ -42,26 +50,39 @@ function takesPrefix(unit: string): boolean {
   return /^(rad|m|N|V|A|W|J|s|Hz|Pa)([/·*].*)?$/.test(unit);
 }
 
-/** Round steps for an axis: about `count` ticks between the ends. */
+/** Round steps for an axis: about `count` ticks between the ends, and at least two, for one tells no scale. */
 export function linearTicks(lower: number, upper: number, count: number): number[] {
   const range = upper - lower;
   if (!(range > 0)) return [lower];
   const rough = range / Math.max(1, count);
   const power = 10 ** Math.floor(Math.log10(rough));
-  const step = ([1, 2, 5, 10].find((it) => it * power >= rough * 0.999) ?? 10) * power;
-  const ticks: number[] = [];
-  for (let k = Math.ceil(lower / step - 1e-9); k * step <= upper + 1e-9 * range; ++k) ticks.push(k * step);
+  let ticks: number[] = [];
+  for (const factor of [10, 5, 2, 1, 0.5, 0.2]) {
+    const step = factor * power;
+    if (step < 0.999 * rough && ticks.length >= 2) break;
+    ticks = multiples(step, lower, upper);
+  }
   return ticks;
 }
 
-/** Decades; with 2 and 5 between them where there are few. */
-export function logarithmicTicks(lower: number, upper: number): number[] {
-  const first = Math.floor(Math.log10(lower));
-  const last = Math.ceil(Math.log10(upper));
-  const within = last - first <= 2 ? [1, 2, 5] : [1];
-  const ticks: number[] = [];
-  for (let decade = first; decade <= last; ++decade) {
-    for (const factor of within) ticks.push(factor * 10 ** decade);
+function multiples(step: number, lower: number, upper: number): number[] {
+  const found: number[] = [];
+  for (let k = Math.ceil(lower / step - 1e-9); k * step <= upper + 1e-9 * (upper - lower); ++k) found.push(k * step);
+  return found;
+}
+
+/** About `count` numbers: decades, with 3 or with 2 and 5 between them where there is room; equal steps within less than one. */
+export function logarithmicTicks(lower: number, upper: number, count = Infinity): number[] {
+  const decades = Math.log10(upper / lower);
+  const every = Math.max(1, Math.ceil(decades / count));
+  const first = every * Math.floor(Math.log10(lower) / every + 1e-9);
+  let found: number[] = [];
+  for (const within of every > 1 || decades > 4 ? [[1]] : [[1], [1, 3], [1, 2, 5]]) {
+    const ticks: number[] = [];
+    for (let decade = first; decade <= Math.ceil(Math.log10(upper)); decade += every)
+      for (const factor of within) ticks.push(factor * 10 ** decade);
+    const seen = ticks.filter((it) => it >= lower * 0.999 && it <= upper * 1.001);
+    if (found.length < 3 || seen.length <= count) found = seen;
   }
-  return ticks.filter((it) => it >= lower * 0.999 && it <= upper * 1.001);
+  return found.length >= 3 ? found : linearTicks(lower, upper, Math.min(count, 6));
 }

@@ -6,14 +6,14 @@ export interface Palette {
   line: string;
   grid: string;
   card: string;
-  lines: readonly string[]; // told apart by those who are colour-blind; and each has a dash of its own
+  lines: readonly string[]; // told apart by those who are colour-blind; and each has a mark of its own
+  figure: Readonly<Record<string, string>>; // of figures, by name
 }
 
-/** In pixels of the page; the first is a plain line. */
-export const dashes: readonly (readonly number[])[] = [[], [9, 4], [2.5, 3], [10, 3, 2.5, 3], [5, 2.5], [14, 3]];
-export const looks = dashes.length;
+/** Names of what is drawn in turn; marks.ts has a shape for each. */
+export const looks = ["blue", "vermillion", "green", "purple", "orange", "sky"] as const;
 
-const names = ["--blue", "--vermillion", "--green", "--purple", "--orange", "--sky"];
+const ofFigures = [...looks, "yellow", "grey", "sky_cell", "orange_cell", "hatch"];
 const dark = matchMedia("(prefers-color-scheme: dark)");
 let current: Palette | null = null;
 
@@ -27,7 +27,8 @@ export function palette(): Palette {
     line: colour("--line"),
     grid: colour("--grid"),
     card: colour("--card"),
-    lines: names.map(colour),
+    lines: looks.map((it) => colour(`--${it}`)),
+    figure: Object.fromEntries(ofFigures.map((it) => [it, colour(`--${it}`)])),
   };
   return current;
 }

@@ -1,9 +1,11 @@
 import { element } from "./dom";
+import { tableMenu } from "./plot/out/export_menu";
 
 export interface Column<Row> {
   head: string;
   text: (row: Row) => string;
-  key: (row: Row) => number | string; // to sort by
+  key: (row: Row) => number | string; // to sort by, and in files
+  file?: string; // the head there, with the unit of the key
 }
 
 /** A table that is sorted by a press on a head; its first column opens the row. */
@@ -22,19 +24,17 @@ export class SortableTable<Row> {
   ) {
     this.heads = columns.map((column, i) => {
       const sort = element("button", { type: "button", class: "link", click: () => this.sort(i) }, column.head);
-      return element("th", { scope: "col", "aria-sort": "none", ...this.numeric(i) }, sort);
+      const file = column.file === undefined ? {} : { "data-head": column.file };
+      return element("th", { scope: "col", "aria-sort": "none", ...file, ...this.numeric(i) }, sort);
     });
-    this.root = element(
-      "div",
-      { class: "scrolled" },
-      element(
-        "table",
-        {},
-        element("caption", {}, caption),
-        element("thead", {}, element("tr", {}, ...this.heads)),
-        this.body,
-      ),
+    const table = element(
+      "table",
+      {},
+      element("caption", {}, caption),
+      element("thead", {}, element("tr", {}, ...this.heads)),
+      this.body,
     );
+    this.root = element("div", {}, element("div", { class: "scrolled" }, table), tableMenu(table, caption));
     this.sort(0);
   }
 
@@ -65,7 +65,9 @@ export class SortableTable<Row> {
       "tr",
       {},
       ...this.columns.map((column, i) => {
-        if (i > 0) return element("td", this.numeric(i), column.text(row));
+        const key = column.key(row);
+        const value = typeof key === "number" ? { "data-value": Number.isFinite(key) ? String(key) : "" } : {};
+        if (i > 0) return element("td", { ...this.numeric(i), ...value }, column.text(row));
         return element(
           "th",
           { scope: "row" },

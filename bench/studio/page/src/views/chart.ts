@@ -7,6 +7,7 @@ import { ChoicePanel } from "../results/choice_panel";
 import { JobList } from "../results/jobs";
 import { LawCheckboxes } from "../results/law_checkboxes";
 import { LawPanel } from "../results/law_panel";
+import { leadToTab } from "../results/of_recording/old_address";
 import { byName, resultName } from "../results/names";
 import { RecordingChoice } from "../results/order_form";
 import { button, element } from "../ui/dom";
@@ -76,12 +77,18 @@ export const chart: View = {
     root.append(title);
     const jobs = new JobList(context, ["chart", "choice"]);
     const ends: (() => void)[] = [() => jobs.end()];
-    let ended = false;
+    const gone = (): boolean => context.signal.aborted;
     const showChart = async (workspace: Workspace, file: WorkspaceFile): Promise<void> => {
       const of = await context.api.get<ChartFile>("/api/result", { id: file.id });
-      if (ended) return;
+      if (gone()) return;
       title.textContent = `Speed and accuracy: ${resultName(file)}`;
-      const page = new ChartPage(context, workspace, file, of, jobs);
+      const page = new ChartPage(
+        context,
+        workspace,
+        file,
+        of,
+        (path, body) => void jobs.order(path, body, (it) => context.go("chart", it)),
+      );
       ends.push(() => page.end());
       root.append(page.root);
     };
@@ -101,14 +108,14 @@ export const chart: View = {
       const workspace = await context.api.get<Workspace>("/api/workspace");
       const charts = workspace.files.filter((it) => it.kind === "chart").sort(byName);
       const choices = workspace.files.filter((it) => it.kind === "choice").sort(byName);
+      if (gone() || (id && leadToTab(context, workspace, "chart", [...charts, ...choices]))) return;
       const choice = choices.find((it) => it.id === id);
       const file = charts.find((it) => it.id === id) ?? (choice && chartOf(charts, choice));
       if (file) return showChart(workspace, file);
       if (choice) return showChoice(workspace, choice);
       const laws = await context.api.get<FittedLaw[]>("/api/laws/fitted");
-      if (ended) return;
-      if (id && !workspace.recordings.some((it) => it.id === id))
-        context.say("That chart is not in this folder any more.");
+      if (gone()) return;
+      if (id) context.say("That chart is not in this folder any more.");
       root.append(
         element(
           "div",
@@ -126,7 +133,6 @@ export const chart: View = {
     };
     show().catch(context.complain);
     return () => {
-      ended = true;
       for (const end of ends) end();
     };
   },

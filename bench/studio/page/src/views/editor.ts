@@ -16,8 +16,10 @@ import { takePointer } from "../editor/pointer";
 import { savePanel } from "../editor/panels/save_panel";
 import { startFrom } from "../editor/panels/start_from";
 import { optima, toolbar } from "../editor/panels/tools";
+import { stateKeys } from "../recording/keys";
 import { element, labelled, select } from "../ui/dom";
-import type { Context, View } from "../ui/view";
+import { Latest } from "../ui/latest";
+import type { Context, OpenRecording, View } from "../ui/view";
 
 // What was drawn stays while the page does, whatever is looked at in between.
 const drafts = new Map<string, History<Knots>>();
@@ -95,21 +97,22 @@ function edit(
   });
   const found = curve.segmented_here ? ", found here: the recording is not segmented" : "";
   const cycles = `${curve.cycles} ${curve.cycles === 1 ? "cycle" : "cycles"}${found}`;
+  tools.root.append(
+    recording.axes.length > 1 ? element("div", { class: "axis_choice" }, labelled("Axis", choice)) : "",
+    element("p", { class: "quiet" }, cycles),
+  );
   canvas.plot.svg.setAttribute("aria-describedby", "editor_keys");
   root.append(
-    element(
-      "div",
-      { class: "heading" },
-      element("h1", {}, name),
-      element("p", { class: "quiet" }, cycles),
-      labelled("Axis", choice),
-      element("a", { href: "#/editor" }, "Other recording"),
-    ),
     tools.root,
     element(
       "div",
       { class: "sheet" },
-      element("div", { class: "plot card" }, canvas.plot.svg, legend()),
+      element(
+        "div",
+        { class: "plot card" },
+        canvas.plot.svg,
+        element("div", { class: "plot_bar" }, legend(), canvas.plot.menu()),
+      ),
       element(
         "div",
         { class: "side card" },
@@ -139,7 +142,7 @@ function legend(): HTMLElement {
     ["closing", "averaged closing"],
     ["opening", "averaged opening"],
     ["law", "law, closing"],
-    ["law dashed", "law, opening"],
+    ["law thin", "law, opening"],
   ];
   return element(
     "ul",
@@ -148,52 +151,40 @@ function legend(): HTMLElement {
   );
 }
 
-async function open(context: Context, id: string, asked: number | null): Promise<Opened> {
-  const { api } = context;
-  const [recording, workspace] = await Promise.all([
-    api.get<Recording>("/api/recording", { id }),
-    api.get<Workspace>("/api/workspace"),
-  ]);
-  const axis = asked ?? recording.cycles?.axis ?? 0;
-  return { recording, workspace, axis, curve: await api.get<EditorCurve>("/api/editor/curve", { id, axis }) };
+/** The editor of a recording, in a tab of its page; gives back what ends it. */
+export function editorOf(root: HTMLElement, context: Context, recording: OpenRecording): () => void {
+  const latest = new Latest(context.signal);
+  let end = (): void => {};
+  const load = async (asked: number | null, byHand = false): Promise<void> => {
+    const axis = asked ?? recording.about.cycles?.axis ?? 0;
+    try {
+      const curve = await latest.ask((signal) =>
+        context.api.get<EditorCurve>("/api/editor/curve", { id: recording.id, axis }, signal),
+      );
+      if (!curve) return;
+      end();
+      root.replaceChildren();
+      const { about, workspace } = recording;
+      end = edit(root, context, { recording: about, workspace, axis, curve }, (other) => {
+        context.state.set({ [stateKeys.axis]: other }, "push");
+        void load(other, true);
+      });
+      if (byHand) root.querySelector<HTMLSelectElement>(".axis_choice select")?.focus();
+    } catch (error) {
+      root.replaceChildren(element("p", { class: "empty" }, error instanceof Error ? error.message : String(error)));
+    }
+  };
+  root.append(element("p", { class: "empty", role: "status" }, "The averaged cycle is being made …"));
+  void load(context.state.number(stateKeys.axis));
+  return () => end();
 }
 
+/** Which recording is drawn over; a recording's own page has the editor. */
 export const editor: View = {
   name: "editor",
   title: "Segment editor",
   mount(root, context) {
-    let end = (): void => {};
-    let asked = 0; // what was asked for last; older answers come too late
-    const { id } = context.place;
-    const load = async (axis: number | null): Promise<void> => {
-      const mine = ++asked;
-      try {
-        if (id === "") {
-          await chooser(root, context);
-          return context.focusHead();
-        }
-        const opened = await open(context, id, axis);
-        if (mine !== asked) return;
-        end();
-        root.replaceChildren();
-        end = edit(root, context, opened, (other) => void load(other));
-        if (axis === null) context.focusHead();
-        else root.querySelector<HTMLSelectElement>(".heading select")?.focus();
-      } catch (error) {
-        if (mine !== asked) return;
-        context.complain(error);
-        if (root.childElementCount === 0) {
-          root.append(
-            element("h1", {}, "Segment editor"),
-            element("p", {}, element("a", { href: "#/editor" }, "Choose a recording")),
-          );
-        }
-      }
-    };
-    void load(null);
-    return () => {
-      ++asked;
-      end();
-    };
+    chooser(root, context).then(() => context.signal.aborted || context.focusHead(), context.complain);
+    return () => {};
   },
 };

@@ -2,26 +2,33 @@ import "./results.css";
 
 import type { FitFile, FittedLaw } from "../api/results";
 import type { Workspace, WorkspaceFile } from "../api/workspace";
-import { element, labelled } from "../ui/dom";
+import { element } from "../ui/dom";
 import type { Context, View } from "../ui/view";
 import { FitPage } from "../results/fit_page";
+import { FitOptions } from "../results/fit_options";
 import { JobList } from "../results/jobs";
 import { LawCheckboxes } from "../results/law_checkboxes";
+import { leadToTab } from "../results/of_recording/old_address";
 import { byName, resultName } from "../results/names";
 import { RecordingChoice } from "../results/order_form";
 
 /** A form for a fit of one recording. */
 function form(context: Context, workspace: Workspace, laws: FittedLaw[], chosen: string, jobs: JobList): HTMLElement {
   const boxes = new LawCheckboxes(laws);
-  const folds = element("input", { type: "number", min: 0, max: 100, step: 1, value: 5 });
-  const which = new RecordingChoice(context, RecordingChoice.of(workspace), chosen, (axis) => boxes.show(axis));
+  const fold = element("div");
+  let options = new FitOptions(undefined);
+  const which = new RecordingChoice(context, RecordingChoice.of(workspace), chosen, (axis) => {
+    boxes.show(axis);
+    options = new FitOptions(axis);
+    fold.replaceChildren(options.root);
+  });
   const start = (event: Event): void => {
     event.preventDefault();
     const models = boxes.chosen();
     if (!which.recording) return context.complain(new Error("There is no recording to fit"));
     if (models.length === 0) return context.complain(new Error("Choose a law to fit"));
     context.say("");
-    const order = { recording: which.recording.id, axis: which.axis, models, folds: Number(folds.value) };
+    const order = { recording: which.recording.id, axis: which.axis, models, ...options.given };
     void jobs.order("/api/fit", order, (file) => context.go("fits", file));
   };
   return element(
@@ -30,12 +37,8 @@ function form(context: Context, workspace: Workspace, laws: FittedLaw[], chosen:
     element("h2", {}, "Fit laws to a recording"),
     which.root,
     boxes.root,
-    element(
-      "div",
-      { class: "row" },
-      labelled("Folds that are held out by turns (0: none)", folds),
-      element("button", { type: "submit", class: "firm" }, "Fit"),
-    ),
+    fold,
+    element("div", { class: "row" }, element("button", { type: "submit", class: "firm" }, "Fit")),
   );
 }
 
@@ -59,24 +62,24 @@ export const fits: View = {
     root.append(title);
     const jobs = new JobList(context, ["fit"]);
     let page: FitPage | null = null;
-    let ended = false;
+    const gone = (): boolean => context.signal.aborted;
     const show = async (): Promise<void> => {
       const { id } = context.place;
       const workspace = await context.api.get<Workspace>("/api/workspace");
       const files = workspace.files.filter((it) => it.kind === "fit").sort(byName);
+      if (gone() || (id && leadToTab(context, workspace, "fits", files))) return;
       const file = files.find((it) => it.id === id);
       if (file) {
         const fit = await context.api.get<FitFile>("/api/result", { id });
-        if (ended) return;
+        if (gone()) return;
         title.textContent = `Fit ${resultName(file)}`;
         page = new FitPage(context, workspace, file, fit);
         root.append(page.root);
         return;
       }
       const laws = await context.api.get<FittedLaw[]>("/api/laws/fitted");
-      if (ended) return;
-      if (id && !workspace.recordings.some((it) => it.id === id))
-        context.say("That fit is not in this folder any more.");
+      if (gone()) return;
+      if (id) context.say("That fit is not in this folder any more.");
       root.append(
         element(
           "div",
@@ -88,7 +91,6 @@ export const fits: View = {
     };
     show().catch(context.complain);
     return () => {
-      ended = true;
       jobs.end();
       page?.end();
     };

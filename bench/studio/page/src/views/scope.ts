@@ -4,12 +4,13 @@ import type { LoopStatus } from "../api/loop";
 import type { Trace } from "../api/recordings";
 import type { Workspace } from "../api/workspace";
 import { button, element, labelled, select } from "../ui/dom";
-import { singleKeysOn } from "../ui/help";
+import { singleKeysOn } from "../ui/single_keys";
 import { isTyping } from "../ui/keys";
 import type { Context, View } from "../ui/view";
 import { LastEvents, LiveStream } from "../scope/live_stream";
 import { ScopeControls } from "../scope/scope_controls";
 import { ScopeFigures } from "../scope/scope_figures";
+import { ScopeInstrument } from "../scope/scope_instrument";
 import { ScopePicture } from "../scope/scope_picture";
 import { axisOf } from "../recordings/trace_groups";
 
@@ -24,6 +25,8 @@ class Scope {
   private readonly controls: ScopeControls;
   private readonly figures = new ScopeFigures();
   private readonly picture: ScopePicture;
+  private readonly instrument: ScopeInstrument;
+  private readonly stopped = element("p", { class: "stopped", role: "status" });
   private readonly stream: LiveStream;
   private readonly events = new LastEvents();
   private readonly list = element("ol", { class: "event_list", tabindex: 0, "aria-label": "Events, newest first" });
@@ -63,7 +66,10 @@ class Scope {
       (ticks) => this.stream.open(ticks),
       (factor) => this.otherWindow(factor),
       complain,
+      () => this.instrument.draw(),
+      (at) => this.onTriggered(at),
     );
+    this.instrument = new ScopeInstrument(context, this.picture);
     this.stream = new LiveStream(api, {
       frame: (frame) => {
         if (this.events.add(frame.events)) this.showEvents();
@@ -100,14 +106,22 @@ class Scope {
           labelled("Axis", this.axis),
           labelled("Timing", this.scale),
           this.pauseButton,
+          this.instrument.views,
         ),
+        this.instrument.trigger.root,
+        this.stopped,
         this.picture.stack.root,
+        this.instrument.xy.root,
+        this.instrument.spectrum.root,
+        this.instrument.strip.root,
+        element("div", { class: "scope_foot" }, this.instrument.strip.reading, this.instrument.cursors.root),
         this.stale,
       ),
       element(
         "aside",
         { class: "scope_panel", "aria-label": "Loop" },
         this.controls.root,
+        this.instrument.marks.root,
         this.figures.root,
         element("div", { class: "events" }, element("h2", {}, "Events"), this.list),
       ),
@@ -123,6 +137,8 @@ class Scope {
     this.forbidden.hidden = true;
     this.controls.show(status);
     this.figures.show(status);
+    this.instrument.showStatus(status);
+    this.showStopped(status);
     this.pauseButton.disabled = this.traces.length === 0;
     const another = before !== null && status.run !== before.run;
     const hasRun = status.running || (status.run ?? 0) > 0;
@@ -149,7 +165,9 @@ class Scope {
         this.events.clear();
         this.showEvents();
         this.picture.restart();
+        this.showPaused();
       }
+      this.instrument.offer(this.traces, this.status?.rate_hz ?? 1000);
       this.chooseTraces();
     } catch (error) {
       this.context.complain(error);
@@ -166,6 +184,7 @@ class Scope {
       .map((it) => it.k);
     const { rate_hz = 1000, ticks = 0 } = this.status ?? {};
     this.picture.setTraces(this.traces, chosen, rate_hz || 1000, ticks, this.scale.value === "log");
+    this.instrument.offerLines();
   }
 
   private isShown(trace: Trace, axis: string): boolean {
@@ -185,6 +204,25 @@ class Scope {
   private togglePause(): void {
     if (this.picture.paused) this.picture.resume();
     else this.picture.pause();
+    this.showPaused();
+  }
+
+  private onTriggered(at: number | null): void {
+    this.instrument.triggered(at);
+    this.showPaused();
+    // A single one holds after it is told.
+    queueMicrotask(() => this.showPaused());
+  }
+
+  /** What is seen of a loop that has ended is not what a loop does now, and is not to be taken for it. */
+  private showStopped(status: LoopStatus): void {
+    const stopped = !status.running && status.starting !== true && this.traces.length > 0;
+    const text = stopped ? "Stopped: this is the end of the last loop." : "";
+    if (this.stopped.textContent !== text) this.stopped.textContent = text;
+    this.root.classList.toggle("is_stopped", stopped);
+  }
+
+  private showPaused(): void {
     this.pauseButton.textContent = this.picture.paused ? "Go on" : "Pause";
     this.pauseButton.setAttribute("aria-pressed", String(this.picture.paused));
   }

@@ -78,6 +78,7 @@ function whereItStands(session: WorkspaceSession): string {
 function startForm(
   session: WorkspaceSession,
   device: string,
+  hasKeyFile: boolean,
   start: (order: Record<string, unknown>) => void,
 ): HTMLFormElement {
   const uri = element("input", {
@@ -113,7 +114,13 @@ function startForm(
     labelled(`Device (empty: the protocol's; this studio's is ${device})`, uri),
     session.key === "passphrase"
       ? labelled("Passphrase of whoever keeps the blinding", passphrase)
-      : element("p", { class: "quiet" }, "Sealed with a key file: the studio has to be started with --key-file."),
+      : element(
+          "p",
+          { class: hasKeyFile ? "quiet" : "wrong" },
+          hasKeyFile
+            ? "Sealed with a key file, which the studio has."
+            : "Sealed with a key file, which the studio has not: start it with --key-file FILE.",
+        ),
     apparatus.root,
     element("label", { class: "tick" }, check, element("span", {}, "Try the laws on the device first")),
     element(
@@ -140,12 +147,13 @@ function mount(root: HTMLElement, context: Context): () => void {
     folderQuality(context, () => known),
   );
   let device = "";
+  let hasKeyFile = false;
   let known: readonly WorkspaceSession[] = [];
   let running = ""; // the name of the session that runs
 
   const choose = (session: WorkspaceSession): void => {
     form.replaceChildren(
-      startForm(session, device, (order) => {
+      startForm(session, device, hasKeyFile, (order) => {
         context.say("The session is being opened");
         context.api.post<SessionState>("/api/session/start", order).then((state) => {
           card.show(state);
@@ -184,6 +192,7 @@ function mount(root: HTMLElement, context: Context): () => void {
   const look = async (): Promise<void> => {
     const state = await context.api.get<SessionState>("/api/session");
     card.show(state);
+    hasKeyFile = state.has_key_file;
     const now = state.running ? state.name : "";
     if (running === now) return;
     running = now;
@@ -193,7 +202,12 @@ function mount(root: HTMLElement, context: Context): () => void {
     "click",
     () => void context.api.post("/api/session/stop").then(look).catch(context.complain),
   );
-  refresh().catch(context.complain);
+  refresh()
+    .then(() => {
+      const asked = known.find((it) => it.id === context.place.id);
+      if (asked && running === "" && !asked.finished && asked.error === "") choose(asked);
+    })
+    .catch(context.complain);
   look().catch(context.complain);
   const timer = setInterval(() => void look().catch(context.complain), 500);
   return () => clearInterval(timer);

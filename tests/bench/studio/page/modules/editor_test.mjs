@@ -191,11 +191,15 @@ test("a drawing drags, undoes and removes in its own steps", () => {
   assert.deepEqual(drawing.knots.opening, [-1, -1]);
 });
 
-test("one prefix serves a whole range", () => {
-  const scale = editor.scaleFor([0, 0.0123, -0.4], "rad");
-  assert.equal(scale.unit, "mrad");
-  assert.equal(editor.inUnits(0.0123, scale), "12.3 mrad");
+test("one prefix serves a whole range, and angles are in degrees", () => {
+  const scale = editor.scaleFor([0, 0.0123, -0.4], "m");
+  assert.equal(scale.unit, "mm");
+  assert.equal(editor.inUnits(0.0123, scale), "12.3 mm");
   assert.equal(editor.asField(0.0123456789, scale), "12.35");
+  const angle = editor.scaleFor([0, Math.PI / 6], "rad");
+  assert.equal(angle.unit, "deg");
+  assert.equal(editor.inUnits(Math.PI / 12, angle), "15 deg");
+  assert.equal(editor.asField(Math.PI / 12, angle), "15");
   assert.equal(editor.scaleFor([3.2], "N").unit, "N");
   assert.equal(editor.scaleFor([0], "N").unit, "N");
 });

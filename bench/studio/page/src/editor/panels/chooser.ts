@@ -7,7 +7,7 @@ export async function chooser(root: HTMLElement, context: Context): Promise<void
   const workspace = await context.api.get<Workspace>("/api/workspace");
   const items = workspace.recordings
     .filter((it) => !it.partial)
-    .map((it) => element("li", {}, element("a", { href: `#/editor/${it.id}` }, it.name)));
+    .map((it) => element("li", {}, element("a", { href: `#/recording/${it.id}/law` }, it.name)));
   root.append(
     element("h1", {}, "Segment editor"),
     element("p", {}, "A law of straight segments is drawn over the averaged cycle of a recording. Choose one:"),

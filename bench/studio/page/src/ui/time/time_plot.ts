@@ -1,19 +1,19 @@
-import uPlot from "uplot";
-
 import { drawn, element } from "../dom";
+import { figureOf, type Figure, type FigureTick } from "../figure_description";
+import { markPath } from "../marks";
 import { linearTicks, plain, unitFor } from "../numbers";
-import { dashes, palette } from "../palette";
+import { looks, palette } from "../palette";
+import { axesOf, frameOf, roomAtRight } from "../plot/frame";
+import { nodeOf } from "../plot/shapes";
+import { screenStyle } from "../plot/style";
 import { calmLimits } from "./time_limits";
-import { columnAt, widen, type Mapping, type TimeLine } from "./time_line";
+import { columnAt, columnsWithin, widen, type Mapping, type TimeLine } from "./time_line";
 import { drawCycleMarks } from "./cycle_marks";
 import { drawEvents, drawGround, noMarks, type TimeMarks } from "./time_marks";
 import { TimeRaster } from "./time_raster";
 import type { TimeRange } from "./time_range";
 
 const axisWidth = 76;
-const timeAxisHeight = 46;
-const font = "13px system-ui, 'Noto Sans', 'DejaVu Sans', sans-serif";
-const labelFont = `600 ${font}`;
 
 /** What the plots of a stack have in common. */
 export interface Shared {
@@ -25,13 +25,14 @@ export interface Shared {
 }
 
 /**
- * One plot of quantities of one unit over time: axes by uPlot, lines by TimeRaster, a legend that is the
+ * One plot of quantities of one unit over time: axes as every plot has them, lines by TimeRaster, a legend that is the
  * cursor's read-out too. Its size is its box's; nothing in it moves anything outside.
  */
 export class TimePlot {
   readonly root: HTMLElement;
   readonly over: HTMLElement;
-  private readonly plot: uPlot;
+  private readonly svg = drawn("svg", { class: "time_axes", "aria-hidden": "true" });
+  private size = { width: 400, height: 100 };
   private readonly box: HTMLElement;
   private readonly line = element("div", { class: "time_cursor", hidden: true });
   private readonly values: HTMLElement[] = [];
@@ -57,34 +58,26 @@ export class TimePlot {
     this.map = { from: 0, to: 1, width: 1, lower: 0, upper: 1, height: 1, logarithmic, pixels: 1 };
     this.box = element("div", { class: "time_box" });
     this.root = element("div", { class: bottom ? "time_plot bottom" : "time_plot" }, this.legend(), this.box);
-    this.plot = new uPlot(
-      this.options(),
-      [
-        [0, 1],
-        [null, null],
-      ],
-      this.box,
-    );
-    this.over = this.plot.over;
+    this.over = element("div", { class: "time_over" }, this.ground, this.raster.canvas, this.line);
+    this.box.append(this.svg, this.over);
     this.raster.canvas.className = "time_layer";
-    this.over.append(this.ground, this.raster.canvas, this.line);
-    this.plot.root.querySelector(".u-wrap")?.setAttribute("aria-hidden", "true");
-  }
-
-  end(): void {
-    this.plot.destroy();
   }
 
   /** Takes the size of its box. */
   fit(): void {
     const { clientWidth: width, clientHeight: height } = this.box;
-    if (width < 50 || height < 20 || (width === this.plot.width && height === this.plot.height)) return;
-    this.plot.setSize({ width, height });
+    if (width < 50 || height < 20 || (width === this.size.width && height === this.size.height)) return;
+    this.size = { width, height };
+    this.axes = "";
+    this.shared.redraw();
   }
 
   /** Pixels of the screen across the plot, without axes. */
   get columns(): number {
-    return Math.max(100, Math.round(this.plot.bbox.width || 1000));
+    return Math.max(
+      100,
+      Math.round((this.size.width - axisWidth - roomAtRight(screenStyle())) * (devicePixelRatio || 1)),
+    );
   }
 
   draw(): void {
@@ -102,7 +95,7 @@ export class TimePlot {
     this.unit = unitFor(this.logarithmic ? 1 : Math.max(-limits[0], limits[1]), this.lines[0]?.unit ?? "");
     const relative = [range.from, range.to].map((it) => ((it - this.shared.origin_s) / range.span).toFixed(6));
     const axes = [...relative, range.span, ...limits, this.logarithmic, this.shared.timeLabel].join(" ");
-    if (axes !== this.axes) this.plot.redraw(true, true);
+    if (axes !== this.axes) this.drawAxes(limits);
     this.axes = axes;
     this.layers();
     this.point();
@@ -133,6 +126,48 @@ export class TimePlot {
       const text = seen ? this.reading(line, at) : "";
       const cell = this.values[k];
       if (cell && cell.textContent !== text) cell.textContent = text;
+    });
+  }
+
+  /** What is shown, with all columns that are there: the smallest and the largest value of each. */
+  figure(): Figure {
+    const { range, origin_s, timeLabel } = this.shared;
+    const { factor, text } = this.axisUnit;
+    const stretch = (line: TimeLine): { first: number; end: number } => {
+      const [first, end] = columnsWithin(line, range.from, range.to);
+      return { first, end };
+    };
+    const several = this.lines.length > 1;
+    const areas = this.lines.map((line) => {
+      const { first, end } = stretch(line);
+      const scaled = (values: ArrayLike<number>): (number | null)[] =>
+        Array.from({ length: end - first }, (_, i) => written(values[first + i]!, factor));
+      const x = Array.from(
+        { length: end - first },
+        (_, i) => line.time[first + i]! + line.shift_s + line.middle_s - origin_s,
+      );
+      return {
+        label: several ? line.name : "",
+        name: line.name,
+        x,
+        low: scaled(line.smallest),
+        high: scaled(line.largest),
+        colour: looks[line.look % looks.length]!,
+        extremes: true,
+        marked: several,
+      };
+    });
+    const [lower, upper] = (this.limits ?? [0, 1]).map((it) => (this.logarithmic ? 10 ** it : it) / factor) as [
+      number,
+      number,
+    ];
+    const unit = text || "1";
+    return figureOf(timeLabel, `${this.title} [${unit}]`, {
+      areas,
+      x_range: [range.from - origin_s, range.to - origin_s],
+      y_range: [lower, upper],
+      log_y: this.logarithmic,
+      notes: [...new Set(this.lines.map((it) => columnsInWords(it)))].filter(Boolean),
     });
   }
 
@@ -169,97 +204,69 @@ export class TimePlot {
     return element("ul", { class: "time_legend", "aria-label": this.title }, title, ...items);
   }
 
-  private options(): uPlot.Options {
+  private drawAxes([lower, upper]: [number, number]): void {
     const { range } = this.shared;
-    const ink = (): string => palette().ink;
-    const grid = { stroke: () => palette().grid, width: 1 };
-    const ticks = { stroke: () => palette().line, width: 1, size: 5 };
-    return {
-      width: 400,
-      height: 100,
-      padding: [6, 20, this.bottom ? 0 : 6, 0],
-      legend: { show: false },
-      cursor: { show: false },
-      select: { show: false, left: 0, top: 0, width: 0, height: 0 },
-      series: [{}, { paths: () => null, points: { show: false }, auto: false }],
-      scales: {
-        x: { time: false, auto: false, range: () => [range.from, range.to] },
-        y: { range: () => this.limits ?? [0, 1] },
-      },
-      axes: [
-        {
-          show: true,
-          stroke: ink,
-          font,
-          labelFont,
-          grid,
-          ticks: { ...ticks, show: this.bottom },
-          border: { show: true, stroke: () => palette().line, width: 1 },
-          size: this.bottom ? 24 : 0,
-          labelSize: this.bottom ? timeAxisHeight - 24 : 0,
-          label: this.bottom ? () => this.shared.timeLabel : "",
-          splits: (plot, _, from, to) => this.timeTicks(from, to, (plot.bbox.width || 800) / uPlot.pxRatio),
-          values: (_, splits) => (this.bottom ? this.timeTexts(splits) : splits.map(() => "")),
-        },
-        {
-          stroke: ink,
-          font,
-          labelFont,
-          grid,
-          ticks,
-          border: { show: true, stroke: () => palette().line, width: 1 },
-          size: axisWidth - 22,
-          labelSize: 22,
-          label: () => `[${(this.logarithmic ? unitFor(1, this.lines[0]?.unit ?? "") : this.unit).text || "1"}]`,
-          splits: (plot, _, lower, upper) => this.valueTicks(lower, upper, plot.bbox.height / uPlot.pxRatio),
-          values: (_, splits) => this.valueTexts(splits),
-        },
-      ],
-      hooks: { setSize: [() => this.shared.redraw()] },
+    const { width, height } = this.size;
+    const style = screenStyle();
+    const figure = figureOf(this.shared.timeLabel, `[${this.axisUnit.text || "1"}]`, {
+      x_ticks: this.timeTicks(range.from, range.to, width - axisWidth),
+      y_ticks: this.valueTicks(lower, upper, height - (this.bottom ? 50 : 12)),
+    });
+    const limits = { x: [range.from, range.to], y: [lower, upper] } as const;
+    const frame = frameOf(figure, limits, width, height, style, { left: axisWidth, timeAxis: this.bottom });
+    this.svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
+    this.svg.style.setProperty("font-family", style.font);
+    this.svg.replaceChildren(...axesOf(figure, frame, style, this.bottom).map(nodeOf));
+    const place = {
+      left: frame.left,
+      top: frame.top,
+      width: frame.right - frame.left,
+      height: Math.max(1, frame.bottom - frame.top),
     };
+    for (const [name, value] of Object.entries(place)) this.over.style.setProperty(name, `${value}px`);
+    this.map.pixels = devicePixelRatio || 1;
+    [this.map.width, this.map.height] = [place.width, place.height].map((it) => Math.round(it * this.map.pixels)) as [
+      number,
+      number,
+    ];
+  }
+
+  private get axisUnit(): { factor: number; text: string } {
+    return this.logarithmic ? unitFor(1, this.lines[0]?.unit ?? "") : this.unit;
   }
 
   /** Whole steps from the origin, so that they stand still while time runs. */
-  private timeTicks(from: number, to: number, pixels: number): number[] {
+  private timeTicks(from: number, to: number, pixels: number): FigureTick[] {
     const { origin_s: origin } = this.shared;
-    return linearTicks(from - origin, to - origin, pixels / 110).map((it) => it + origin);
-  }
-
-  private timeTexts(splits: number[]): string[] {
-    const { origin_s: origin } = this.shared;
-    const step = splits.length > 1 ? splits[1]! - splits[0]! : 1;
+    const ticks = linearTicks(from - origin, to - origin, pixels / 110);
+    const step = ticks.length > 1 ? ticks[1]! - ticks[0]! : 1;
     const decimals = Math.min(9, Math.max(0, -Math.floor(Math.log10(step) + 1e-6)));
-    return splits.map((it) =>
-      (it - origin)
+    const written = (value: number): string =>
+      value
         .toFixed(decimals)
         .replace(/^-(0(\.0*)?)$/, "$1")
-        .replace("-", "−"),
-    );
+        .replace("-", "−");
+    return ticks.map((it) => ({ at: it + origin, name: written(it) }));
   }
 
-  private valueTicks(lower: number, upper: number, height: number): number[] {
+  private valueTicks(lower: number, upper: number, height: number): FigureTick[] {
     const count = Math.max(2, height / 26);
+    const { factor } = this.unit;
     if (!this.logarithmic)
-      return linearTicks(lower / this.unit.factor, upper / this.unit.factor, count).map((it) => it * this.unit.factor);
-    const ticks: number[] = [];
+      return linearTicks(lower / factor, upper / factor, count).map((it) => ({ at: it * factor, name: plain(it, 5) }));
+    const ticks: FigureTick[] = [];
     const every = Math.max(1, Math.ceil((upper - lower) / count));
-    for (let decade = Math.ceil(lower); decade <= upper; decade += every) ticks.push(decade);
+    for (let decade = Math.ceil(lower); decade <= upper; decade += every) {
+      const { factor: of, text } = unitFor(10 ** decade, this.lines[0]?.unit ?? "");
+      ticks.push({ at: decade, name: `${plain(10 ** decade / of, 2)} ${text}` });
+    }
     return ticks;
-  }
-
-  private valueTexts(splits: number[]): string[] {
-    if (!this.logarithmic) return splits.map((it) => plain(it / this.unit.factor, 5));
-    return splits.map((it) => {
-      const { factor, text } = unitFor(10 ** it, this.lines[0]?.unit ?? "");
-      return `${plain(10 ** it / factor, 2)} ${text}`;
-    });
   }
 
   /** Marks, and the lines above them, in canvases as large as the plot without its axes. */
   private layers(): void {
     const { range, marks } = this.shared;
-    const { map, plot } = this;
-    [map.width, map.height, map.pixels] = [Math.round(plot.bbox.width), Math.round(plot.bbox.height), uPlot.pxRatio];
+    const { map } = this;
     [map.from, map.to] = [range.from, range.to];
     [map.lower, map.upper] = this.limits ?? [0, 1];
     map.logarithmic = this.logarithmic;
@@ -277,24 +284,32 @@ export class TimePlot {
     }
     const colours = palette();
     this.raster.begin(map);
-    for (const line of this.lines)
-      this.raster.add(line, colours.lines[line.look] ?? colours.ink, dashes[line.look] ?? []);
+    for (const line of this.lines) this.raster.add(line, colours.lines[line.look] ?? colours.ink);
     this.raster.paint();
+    if (this.lines.length > 1)
+      for (const line of this.lines) this.raster.mark(line, colours.lines[line.look] ?? colours.ink, colours.card);
   }
+}
+
+/** In a unit, with no more digits than a number of 32 bits has, as which values come. */
+function written(value: number, factor: number): number | null {
+  if (!Number.isFinite(value)) return null;
+  const digits = [6, 7, 8, 9].find((it) => Math.fround(Number(value.toPrecision(it))) === Math.fround(value)) ?? 9;
+  return Number((Number(value.toPrecision(digits)) / factor).toPrecision(12));
+}
+
+function columnsInWords({ step_s, middle_s, name }: TimeLine): string {
+  if (middle_s === 0) return "Every row is there.";
+  return `${name}: smallest and largest value of every ${plain(1e3 * step_s, 4)} ms, at its middle; no spike is lost.`;
 }
 
 /** A short piece of a line as it is drawn. */
 export function swatch(look: number): SVGSVGElement {
+  const kind = `look_${look}`;
   return drawn(
     "svg",
     { class: "swatch", viewBox: "0 0 30 12", width: 30, height: 12, "aria-hidden": "true" },
-    drawn("line", {
-      class: `look_${look}`,
-      x1: 1,
-      x2: 29,
-      y1: 6,
-      y2: 6,
-      "stroke-dasharray": (dashes[look] ?? []).join(" "),
-    }),
+    drawn("line", { class: kind, x1: 1, x2: 29, y1: 6, y2: 6 }),
+    drawn("path", { class: kind, d: markPath(looks[look % looks.length]!, 15, 6, 4.5) }),
   );
 }

@@ -1,4 +1,6 @@
-import { columnsWithin, type Mapping, type TimeLine } from "./time_line";
+import { markPath } from "../marks";
+import { looks } from "../palette";
+import { columnAt, columnsWithin, type Mapping, type TimeLine } from "./time_line";
 
 const thickness = 1.6; // of a line, in pixels of the page
 const bandAlpha = 0.42; // between the two edges of a band
@@ -30,20 +32,43 @@ export class TimeRaster {
     } else this.image.data.fill(0);
   }
 
-  /** A line; it breaks where columns are empty or missing. */
-  add(line: TimeLine, colour: string, dash: readonly number[]): void {
+  /** A line; it breaks where columns are empty or missing, and nowhere else. */
+  add(line: TimeLine, colour: string): void {
     const { map } = this;
     if (!map) return;
     this.top.fill(Infinity);
     this.bottom.fill(-Infinity);
     const perSecond = map.width / (map.to - map.from);
     this.trace(line, map, perSecond);
-    // A dash goes with the line when it moves.
-    this.ink(this.rgb(colour), dash, map, (map.from - line.shift_s) * perSecond);
+    this.ink(this.rgb(colour), map);
   }
 
   paint(): void {
     this.context?.putImageData(this.image, 0, 0);
+  }
+
+  /** Marks along a line, above what is painted, so that not its colour alone tells it from others. */
+  mark(line: TimeLine, colour: string, edge: string): void {
+    const { map, context } = this;
+    if (!map || !context) return;
+    const perSecond = map.width / (map.to - map.from);
+    // They stay at their places of the line while it moves.
+    const every = 2 ** Math.ceil(Math.log2((130 * map.pixels) / perSecond));
+    const first = Math.ceil((map.from - line.shift_s) / every - line.look / looks.length);
+    context.fillStyle = colour;
+    context.strokeStyle = edge;
+    context.lineWidth = map.pixels;
+    for (let k = first; ; ++k) {
+      const at = (k + line.look / looks.length) * every + line.shift_s;
+      if (at > map.to) return;
+      const column = columnAt(line, at);
+      if (column < 0) continue;
+      const value = 0.5 * (line.smallest[column]! + line.largest[column]!);
+      const y = ((map.upper - (map.logarithmic ? Math.log10(value) : value)) / (map.upper - map.lower)) * map.height;
+      const path = new Path2D(markPath(looks[line.look]!, (at - map.from) * perSecond, y, 4.5 * map.pixels));
+      context.fill(path);
+      context.stroke(path);
+    }
   }
 
   /** Finds what each pixel across holds. */
@@ -117,8 +142,7 @@ export class TimeRaster {
     }
   }
 
-  private ink(rgb: readonly [number, number, number], dash: readonly number[], map: Mapping, along: number): void {
-    const total = dash.reduce((sum, it) => sum + it, 0) * map.pixels;
+  private ink(rgb: readonly [number, number, number], map: Mapping): void {
     const half = 0.5 * thickness * map.pixels;
     const edge = 2 * half;
     for (let pixel = 0; pixel < this.top.length; ++pixel) {
@@ -126,7 +150,6 @@ export class TimeRaster {
       const bottom = this.bottom[pixel]!;
       if (top === Infinity) continue;
       const thick = bottom - top > 2 * edge;
-      if (total > 0 && !thick && !inkAt(dash, (((along + pixel) % total) + total) % total, map.pixels)) continue;
       if (!thick) {
         this.bar(pixel, top - half, bottom + half, 1, rgb);
         continue;
@@ -183,13 +206,4 @@ export class TimeRaster {
     this.colours.set(colour, rgb);
     return rgb;
   }
-}
-
-function inkAt(dash: readonly number[], along: number, pixels: number): boolean {
-  let rest = along;
-  for (let k = 0; k < dash.length; ++k) {
-    rest -= dash[k]! * pixels;
-    if (rest < 0) return k % 2 === 0;
-  }
-  return true;
 }

@@ -3,7 +3,10 @@ import "./time_plot.css";
 import { button, element } from "../dom";
 import { plain, withUnit } from "../numbers";
 import { onColours } from "../palette";
-import { timeGestures, timeKey } from "./time_gestures";
+import { gestures, pictureKey } from "../plot/gestures";
+import { exportMenu } from "../plot/out/export_menu";
+import type { Sheet } from "../plot/out/sheet";
+import { MovableTime } from "./movable_time";
 import type { TimeLine } from "./time_line";
 import { noMarks, type TimeMarks } from "./time_marks";
 import { TimePlot, type Shared } from "./time_plot";
@@ -19,6 +22,8 @@ export interface PlotOrder {
 export interface StackOptions {
   name: string;
   timeLabel: string;
+  tools?: HTMLElement; // in the bar, before what is read there
+  file?: () => string; // what files of it are called
   /** The stretch has changed, by hand. */
   changed?: (range: TimeRange) => void;
   zoomedWhileFollowing?: (factor: number) => void;
@@ -80,13 +85,11 @@ export class TimeStack {
     this.endColours();
     cancelAnimationFrame(this.frame);
     clearTimeout(this.speak);
-    for (const plot of this.plots) plot.end();
     this.plots = [];
   }
 
   /** Which plots there are; their lines may be filled later on. */
   build(orders: readonly PlotOrder[]): void {
-    for (const plot of this.plots) plot.end();
     this.plots = orders.map(
       (it, k) =>
         new TimePlot(
@@ -100,7 +103,7 @@ export class TimeStack {
     );
     this.area.replaceChildren(...this.plots.map((it) => it.root));
     for (const plot of this.plots) {
-      timeGestures(plot.over, this.range);
+      gestures(plot.over, new MovableTime(this.range, plot.over));
       plot.fit();
     }
     this.draw();
@@ -131,6 +134,11 @@ export class TimeStack {
     });
   }
 
+  /** What is shown, to be handed out. */
+  sheet(): Sheet {
+    return { name: this.options.file?.() ?? this.options.name, figures: this.plots.map((it) => it.figure()) };
+  }
+
   private point(): void {
     for (const plot of this.plots) plot.point();
     this.read();
@@ -148,7 +156,7 @@ export class TimeStack {
   }
 
   private key(event: KeyboardEvent): void {
-    if (!timeKey(event, this.range)) return;
+    if (!pictureKey(event, new MovableTime(this.range, this.area))) return;
     clearTimeout(this.speak);
     this.speak = window.setTimeout(() => {
       this.spoken.textContent = [this.reading.textContent, ...this.plots.map((it) => it.spoken())].join("; ");
@@ -161,6 +169,7 @@ export class TimeStack {
     return element(
       "div",
       { class: "time_bar" },
+      this.options.tools ?? null,
       this.reading,
       element(
         "div",
@@ -171,6 +180,7 @@ export class TimeStack {
         small("−", "Show more", () => this.range.zoom(2)),
         small("All", "Show all", () => this.range.whole()),
       ),
+      exportMenu(() => this.sheet()),
     );
   }
 }

@@ -1,0 +1,77 @@
+#include "intake/preview_json.h"
+
+#include <string>
+
+#include "files/json_number.h"
+
+namespace kerf::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string separator_in_words(char separator) {
+  if (separator == '\t') return "tab";
+  return separator == ' ' ? "blanks" : std::string(1, separator);
+}
+
+Json lines_as_json(const std::vector<PreviewLine>& lines) {
+  Json list = Json::array();
+  for (const PreviewLine& line : lines)
+    list.push_back({{"number", line.number}, {"kind", name_of(line.kind)}, {"fields", line.fields}});
+  return list;
+}
+
+Json columns_as_json(const TextLayout& layout) {
+  Json list = Json::array();
+  for (const TextColumn& column : layout.columns)
+    list.push_back({{"number", list.size() + 1},
+                    {"heading", column.heading},
+                    {"name", column.name},
+                    {"unit", column.unit},
+                    {"stamps", column.stamps.has_value()}});
+  return list;
+}
+
+Json mapped_as_json(const ImportPreview& preview) {
+  Json list = Json::array();
+  if (!preview.imported) return list;
+  for (const MappedColumn& column : preview.imported->columns)
+    list.push_back({{"channel", column.channel},
+                    {"column", column.index + 1},
+                    {"unit", column.unit_text},
+                    {"unit_from_file", column.unit_from_file},
+                    {"si", column.unit.si}});
+  return list;
+}
+
+}  // namespace
+
+Json preview_as_json(const ImportPreview& preview, const ImportHead& head, const Upload& upload) {
+  const TextLayout& layout = preview.layout;
+  Json json{{"columns", columns_as_json(layout)},
+            {"lines", lines_as_json(preview.first)},
+            {"irregular", lines_as_json(preview.irregular)},
+            {"layout",
+             {{"separator", separator_in_words(layout.separator)},
+              {"decimal", std::string(1, layout.point)},
+              {"header_line", layout.header_line},
+              {"units_line", layout.units_line},
+              {"preamble_lines", layout.preamble_lines}}},
+            {"suggested", {{"map", preview.suggested}, {"has_time", preview.suggests_time}}},
+            {"mapped", mapped_as_json(preview)},
+            {"problem", as_named(preview.problem, upload)},
+            {"warnings", Json::array()},
+            {"notes", head.notes},
+            {"rows", 0},
+            {"seconds", 0.0},
+            {"is_whole", head.is_whole}};
+  if (!preview.imported) return json;
+  for (const std::string& warning : preview.imported->warnings)
+    json["warnings"].push_back(as_named(warning, upload));
+  const auto& time_s = preview.imported->recording.time;
+  json["rows"] = time_s.size();
+  json["seconds"] = time_s.empty() ? Json(0.0) : json_number(time_s.back());
+  return json;
+}
+
+}  // namespace kerf::bench

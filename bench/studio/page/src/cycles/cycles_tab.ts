@@ -1,0 +1,194 @@
+import type { Recording } from "../api/recordings";
+import { stateKeys } from "../recording/keys";
+import { InspectionPanel } from "../recordings/inspection_panel";
+import { RecordingTime } from "../recordings/recording_time";
+import { firstTraces } from "../recordings/recording_traces";
+import { element } from "../ui/dom";
+import type { Context, OpenRecording } from "../ui/view";
+import { CycleDesk } from "./cycle_desk";
+import { spanOf } from "./cycle_draft";
+import { CycleHandles } from "./cycle_handles";
+import { CycleLoop } from "./cycle_loop";
+import { CycleSettings } from "./cycle_settings";
+import { CycleTable } from "./cycle_table";
+import { draftMarks, type Held } from "./draft_marks";
+import { EarlierFits } from "./earlier_fits";
+import { SaveBar } from "./save_bar";
+
+/** The cycles of a recording over time and in the loop, how they are found, and each of them with its boundaries. */
+export class CyclesTab {
+  private readonly desk: CycleDesk;
+  private readonly time: RecordingTime;
+  private readonly handles: CycleHandles;
+  private readonly settings: CycleSettings;
+  private readonly table: CycleTable;
+  private readonly bar: SaveBar;
+  private readonly loop: CycleLoop;
+  private readonly empty = element("p", { class: "empty", hidden: true });
+  private readonly fits: EarlierFits;
+  private readonly observer: ResizeObserver;
+  private held: Held | null = null;
+
+  constructor(
+    root: HTMLElement,
+    private readonly context: Context,
+    private readonly recording: OpenRecording,
+  ) {
+    const { about, id } = recording;
+    const { api, state } = context;
+    this.loop = new CycleLoop(recording.name);
+    this.desk = new CycleDesk(context, id, () => this.show());
+    this.time = new RecordingTime(api, context.complain, element("div", {}), (from, to, whole) => {
+      state.set({ [stateKeys.from]: whole ? null : from, [stateKeys.to]: whole ? null : to });
+      this.handles.place();
+    });
+    this.handles = new CycleHandles(api, id, this.time.stack.range, this.time.root, {
+      held: (at, time_s) => {
+        this.held = { index: at.index, edge: at.edge, time_s };
+        this.mark();
+      },
+      move: (at, row, time_s, tag) => {
+        this.held = null;
+        this.desk.move(at, row, time_s, tag);
+      },
+      complain: (error) => {
+        this.held = null;
+        context.complain(error);
+        this.show();
+      },
+    });
+    this.settings = new CycleSettings(about.axes, (settings, axis) => this.desk.find(settings, axis));
+    this.table = new CycleTable({
+      choose: (cycle) => this.choose(cycle),
+      remark: (cycle, remark) => this.desk.remark(cycle, remark),
+    });
+    this.bar = new SaveBar(this.desk);
+    this.fits = new EarlierFits(context, recording);
+    const plots = element("div", { class: "cycle_plots" }, this.time.root, this.handles.root);
+    this.lay(root, plots);
+    this.observer = new ResizeObserver(() => this.handles.place());
+    this.observer.observe(plots);
+    plots.addEventListener("click", () => this.chooseAtCursor());
+    this.takeKeys(root);
+    this.time.show([{ recording: about, name: recording.name, shift_s: 0 }], tracesOf(about));
+    this.follow();
+    state.onChange(() => this.follow());
+    void this.desk.open();
+  }
+
+  end(): void {
+    this.observer.disconnect();
+    this.time.end();
+    this.loop.end();
+  }
+
+  private lay(root: HTMLElement, plots: HTMLElement): void {
+    const main = element("div", { class: "cycle_main" }, this.bar.root, this.empty, plots, this.loop.root);
+    const worth = new InspectionPanel((from_s, to_s) => {
+      const [from, to] = [Math.max(0, from_s - 1), to_s + 1];
+      this.context.state.set({ [stateKeys.from]: from, [stateKeys.to]: to }, "push");
+      this.time.showAt(from, to);
+      main.scrollIntoView();
+    });
+    const sideName = "Cycles of the recording";
+    const side = element(
+      "aside",
+      { class: "cycle_side", "aria-label": sideName },
+      this.settings.root,
+      this.fits.root,
+      this.table.root,
+    );
+    root.append(
+      element(
+        "div",
+        { class: "scrolling cycles_scroll" },
+        element("div", { class: "cycle_desk" }, main, side),
+        element("section", { "aria-label": "What it is worth" }, worth.root),
+      ),
+    );
+    const { signal } = this.context;
+    this.recording.inspection().then(
+      (found) => signal.aborted || worth.show(found),
+      (error: unknown) => signal.aborted || worth.fail(error),
+    );
+  }
+
+  private takeKeys(root: HTMLElement): void {
+    this.context.offer(
+      { title: "Undo", group: "Cycles", run: () => this.desk.undo() },
+      { title: "Redo", group: "Cycles", run: () => this.desk.redo() },
+    );
+    root.addEventListener("keydown", (event) => {
+      if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z") return;
+      if (event.target instanceof HTMLInputElement && event.target.type === "text") return; // it undoes its own
+      event.preventDefault();
+      if (event.shiftKey) this.desk.redo();
+      else this.desk.undo();
+    });
+  }
+
+  /** What the address says. */
+  private follow(): void {
+    const { state } = this.context;
+    const [from, to] = [state.number(stateKeys.from), state.number(stateKeys.to)];
+    if (from !== null && to !== null && to > from) this.time.showAt(from, to);
+    else this.time.showAll();
+    this.desk.show(state.number(stateKeys.cycle) ?? 0);
+  }
+
+  private choose(cycle: number): void {
+    const { draft } = this.desk;
+    this.context.state.set({ [stateKeys.cycle]: cycle }, "push");
+    this.desk.show(cycle);
+    const span = draft && spanOf(draft, cycle);
+    const { range } = this.time.stack;
+    if (span) {
+      const long = span.to_s - span.from_s;
+      const isSeen = span.from_s >= range.from && span.to_s <= range.to && long > 0.2 * range.span;
+      if (!isSeen) this.time.showAt(span.from_s - 0.35 * long, span.to_s + 0.35 * long);
+    }
+    this.show();
+  }
+
+  /** A press on a plot chooses the cycle that lies there. */
+  private chooseAtCursor(): void {
+    const at = this.time.stack.range.cursor;
+    const phase = at === null ? undefined : this.desk.draft?.phases.find((it) => at >= it[4] && at < it[5]);
+    if (!phase || phase[0] === this.desk.loop) return;
+    this.context.state.set({ [stateKeys.cycle]: phase[0] }, "push");
+    this.desk.show(phase[0]);
+    this.show();
+  }
+
+  private show(): void {
+    const { view, draft, loop } = this.desk;
+    this.bar.show();
+    if (!view || !draft) return;
+    const locked = view.locked !== "";
+    const { about } = this.recording;
+    this.settings.show(draft.settings ?? view.settings, view.axis, locked);
+    this.table.show(view, draft, loop, locked);
+    this.handles.show(draft, loop, view.rows, about.period_s, locked);
+    this.empty.hidden = view.why_none === "";
+    this.empty.textContent = view.why_none;
+    const axis = about.axes[view.axis];
+    if (axis) this.loop.show(view, axis);
+    this.fits.show(view.version);
+    this.mark();
+  }
+
+  private mark(): void {
+    const { view, draft } = this.desk;
+    if (view && draft) this.time.stack.marks = draftMarks(this.recording.about, view, draft, this.held);
+  }
+}
+
+/** Position and force along the axis of the cycles are what they are seen by; a measured force before a commanded one. */
+function tracesOf(about: Recording): ReadonlySet<string> {
+  const axis = about.axes[about.cycles?.axis ?? 0]?.name ?? "";
+  const own = about.traces.filter((it) => it.name.endsWith(` ${axis}`));
+  const forces = own.filter((it) => it.group === "force");
+  const force = forces.find((it) => it.name.includes("measured")) ?? forces[0];
+  const wanted = [...own.filter((it) => it.group === "position"), ...(force ? [force] : [])].map((it) => it.name);
+  return wanted.length > 0 ? new Set(wanted) : firstTraces(about);
+}

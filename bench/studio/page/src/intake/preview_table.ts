@@ -1,0 +1,150 @@
+import type { LineKind, Preview, PreviewColumn, PreviewLine } from "../api/intake";
+import { element, select } from "../ui/dom";
+import { choicesOf, isPlain, mapOf, ownChannel, usualChannels, type Choice } from "./mapping";
+
+const words: Record<LineKind, string> = {
+  remark: "remark",
+  names: "names",
+  units: "units",
+  data: "",
+  no_data: "left out: no data",
+  misplaced: "left out: its time repeats or goes back",
+  empty: "empty",
+};
+
+/** The first lines of a file, with what each column becomes above it, and what is left out marked at its line. */
+export class PreviewTable {
+  readonly root = element("div", { class: "preview" });
+  private columns = ""; // what the head is of: it is built anew only where that changes, so that focus stays
+  private choices: Choice[] = [];
+  private channels: HTMLSelectElement[] = [];
+  private units: HTMLInputElement[] = [];
+  private readonly head = element("tr", {});
+  private readonly body = element("tbody");
+  private readonly further = element("div", {});
+
+  constructor(private readonly changed: (map: string) => void) {}
+
+  show(preview: Preview, map: string): void {
+    const columns = JSON.stringify(preview.columns);
+    if (columns !== this.columns) this.build(preview);
+    this.columns = columns;
+    this.choices = choicesOf(preview, map);
+    const plain = isPlain(map);
+    this.choices.forEach((choice, k) => {
+      const [channel, unit] = [this.channels[k]!, this.units[k]!];
+      offer(channel, choice.channel);
+      if (document.activeElement !== unit) unit.value = choice.unit;
+      channel.disabled = unit.disabled = !plain;
+      unit.hidden = choice.channel === "" || preview.columns[k]!.stamps;
+    });
+    const width = preview.columns.length;
+    this.body.replaceChildren(...preview.lines.map((line) => row(line, width, this.choices)));
+    this.further.replaceChildren(...this.irregular(preview));
+  }
+
+  clear(): void {
+    this.columns = "";
+    this.root.replaceChildren();
+  }
+
+  private build(preview: Preview): void {
+    this.channels = [];
+    this.units = [];
+    this.head.replaceChildren(
+      element("th", { scope: "col", class: "number" }, "Line"),
+      ...preview.columns.map((column, k) => element("th", { scope: "col" }, this.cell(column, k))),
+      element("th", { scope: "col" }, element("span", { class: "unseen" }, "What the line is")),
+    );
+    this.root.replaceChildren(
+      element(
+        "div",
+        { class: "preview_scroll", tabindex: 0, role: "region", "aria-label": "First lines of the file" },
+        element("table", {}, element("thead", {}, this.head), this.body),
+      ),
+      this.further,
+    );
+  }
+
+  private cell(column: PreviewColumn, k: number): HTMLElement {
+    const name = column.name || `column ${column.number}`;
+    const channel = select([], "", (value) => this.choose(k, value, column));
+    channel.setAttribute("aria-label", `What column ${column.number}, ${name}, becomes`);
+    const unit = element("input", {
+      class: "unit",
+      "aria-label": `Unit of column ${column.number}, ${name}`,
+      placeholder: column.unit || "unit",
+      maxlength: 40,
+      spellcheck: "false",
+      input: () => {
+        this.choices[k]!.unit = unit.value.trim();
+        this.changed(mapOf(this.choices));
+      },
+    });
+    this.channels[k] = channel;
+    this.units[k] = unit;
+    const said = column.stamps ? "time stamps" : column.unit ? `[${column.unit}]` : "no unit in the file";
+    return element(
+      "div",
+      { class: "preview_column" },
+      element("span", { class: "preview_name", title: column.heading }, `${column.number} ${column.name}`),
+      element("span", { class: "quiet" }, said),
+      channel,
+      unit,
+    );
+  }
+
+  private choose(k: number, value: string, column: PreviewColumn): void {
+    for (const [other, choice] of this.choices.entries()) {
+      if (other !== k && choice.channel === value && value !== "own") choice.channel = ""; // a channel is one column's
+    }
+    const taken = [...usualChannels, ...this.choices.map((it) => it.channel)];
+    const channel = value === "own" ? ownChannel(column.name, column.number, taken) : value;
+    const unit = value === "own" && !column.unit ? "1" : "";
+    this.choices[k] = { channel, unit };
+    this.changed(mapOf(this.choices));
+  }
+
+  private irregular(preview: Preview): HTMLElement[] {
+    if (preview.irregular.length === 0) return [];
+    return [
+      element("h3", {}, "Further lines that are left out"),
+      element(
+        "ol",
+        { class: "irregular" },
+        ...preview.irregular.map((line) =>
+          element("li", {}, `Line ${line.number}: ${words[line.kind]}: ${line.fields.join("  ")}`),
+        ),
+      ),
+    ];
+  }
+}
+
+function row(line: PreviewLine, width: number, choices: readonly Choice[]): HTMLElement {
+  const said = words[line.kind];
+  const isLeftOut = line.kind === "no_data" || line.kind === "misplaced";
+  const fields =
+    line.kind === "remark"
+      ? [element("td", { colspan: width }, line.fields[0] ?? "")]
+      : Array.from({ length: width }, (_, k) =>
+          element("td", { class: choices[k]?.channel ? "taken" : "left" }, line.fields[k] ?? ""),
+        );
+  const beyond = line.kind !== "remark" && line.fields.length > width ? ` ${line.fields.slice(width).join("  ")}` : "";
+  return element(
+    "tr",
+    { class: `line_${line.kind}` },
+    element("th", { scope: "row", class: "number" }, `${isLeftOut ? "✕ " : ""}${line.number}`),
+    ...fields,
+    element("td", { class: "line_said" }, `${said}${beyond}`),
+  );
+}
+
+/** The usual channels, and the one that is chosen. */
+function offer(node: HTMLSelectElement, chosen: string): void {
+  const usual = ["", ...usualChannels, "own"];
+  const values = usual.includes(chosen) ? usual : [...usual, chosen];
+  const texts: Record<string, string> = { "": "– left out –", own: "a channel of its own" };
+  if (node.options.length !== values.length || !values.every((it, k) => node.options[k]?.value === it))
+    node.replaceChildren(...values.map((it) => element("option", { value: it }, texts[it] ?? it)));
+  node.value = chosen;
+}

@@ -1,0 +1,161 @@
+import type { Recording, RecordingInspection } from "../api/recordings";
+import type { Workspace, WorkspaceRecording } from "../api/workspace";
+import { element } from "../ui/dom";
+import type { Context, OpenRecording, PageContext } from "../ui/view";
+import { factsInShort } from "./facts";
+import { recordingTabs } from "./registry";
+import { TabStrip } from "./tab_strip";
+
+/** One recording with its tabs: what is around the tab stays while they change. */
+export class RecordingPage {
+  private readonly head = element("h1", {});
+  private readonly facts = element("p", { class: "recording_facts" });
+  private readonly strip: TabStrip;
+  private readonly panel = element("div", { class: "tab_panel", role: "tabpanel", id: "tab_panel" });
+  private recording: OpenRecording | null = null;
+  private said = ""; // of the file that has changed
+  private end: () => void = () => {};
+
+  constructor(
+    root: HTMLElement,
+    private readonly context: PageContext,
+  ) {
+    this.strip = new TabStrip(recordingTabs, (tab) => this.go(tab));
+    this.head.textContent = "Recording";
+    root.append(element("div", { class: "recording_head" }, this.head, this.strip.root, this.facts), this.panel);
+    context.onTab(() => this.show());
+    context.onFolder((workspace) => this.compare(workspace));
+    context.offer(
+      { title: "Read the recording anew", group: "Recording", keys: "r", run: () => void this.open() },
+      ...recordingTabs.map((tab, k) => ({
+        title: `Show the tab ${tab.title}`,
+        group: "Recording",
+        keys: String(k + 1),
+        run: () => this.go(tab.name),
+      })),
+    );
+    void this.open();
+  }
+
+  close(): void {
+    this.end();
+  }
+
+  private get tab(): string {
+    const { tab } = this.context.place;
+    return recordingTabs.some((it) => it.name === tab) ? tab : recordingTabs[0]!.name;
+  }
+
+  /** The state goes along. */
+  private go(tab: string): void {
+    const { place, go } = this.context;
+    go("recording", place.id, tab, place.state);
+  }
+
+  private async open(): Promise<void> {
+    const { api, place, signal } = this.context;
+    const { id } = place;
+    this.strip.mark(this.tab);
+    try {
+      const [workspace, about] = await Promise.all([
+        api.get<Workspace>("/api/workspace", {}, signal),
+        api.get<Recording>("/api/recording", { id }, signal),
+      ]);
+      const name = workspace.recordings.find((it) => it.id === id)?.name ?? id;
+      this.recording = { id, name, about, workspace, inspection: this.inspectOnce(id), reload: () => void this.open() };
+      if (this.said) this.context.say("");
+      this.said = "";
+      const file = name.lastIndexOf("/") + 1;
+      this.head.replaceChildren(
+        element("span", { class: "head_folder" }, name.slice(0, file)),
+        element("span", { class: "head_file" }, name.slice(file)),
+      );
+      this.head.title = name;
+      this.facts.textContent = factsInShort(about);
+      this.facts.title = this.facts.textContent;
+      this.show();
+    } catch (error) {
+      if (signal.aborted) return;
+      this.context.complain(error);
+      const why = error instanceof Error ? error.message : String(error);
+      this.panel.replaceChildren(element("p", { class: "empty" }, `${why}. Choose another in the list.`));
+    }
+  }
+
+  /** With what is in the folder now: the page shows what was read, and says so when that is not what is there. */
+  private compare(workspace: Workspace): void {
+    if (!this.recording) return;
+    const { id, name, workspace: read } = this.recording;
+    const then = read.recordings.find((it) => it.id === id);
+    const now = workspace.recordings.find((it) => it.id === id);
+    const said = !now
+      ? `${name} is not in the folder any more: what is shown was read before.`
+      : !now.partial && then && isNewer(now, then)
+        ? `${name} has changed in the folder: press R to read it anew.`
+        : "";
+    if (said && said !== this.said) this.context.say(said);
+    this.said = said;
+  }
+
+  /** Begins the tab of the address; what is there of the one before ends. */
+  private show(): void {
+    const { recording, tab } = this;
+    const chosen = recordingTabs.find((it) => it.name === tab);
+    if (!recording || !chosen) return;
+    this.end();
+    this.strip.mark(tab);
+    document.title = `${recording.name}: ${chosen.title} – Kerf studio`;
+    this.panel.className = `tab_panel tab_${tab}`;
+    this.panel.setAttribute("aria-labelledby", `tab_${tab}`);
+    this.panel.replaceChildren();
+    const { context, end } = forTab(this.context);
+    const unmount = chosen.mount(this.panel, context, recording);
+    this.end = () => {
+      this.end = () => {};
+      end();
+      unmount();
+    };
+  }
+
+  /** After what is seen first: it takes a second where there are a million rows. */
+  private inspectOnce(id: string): () => Promise<RecordingInspection> {
+    const { api, signal } = this.context;
+    let found: Promise<RecordingInspection> | null = null;
+    return () =>
+      (found ??= new Promise((go) => setTimeout(go, 200)).then(() =>
+        api.get<RecordingInspection>("/api/recording/inspection", { id }, signal),
+      ));
+  }
+}
+
+/** What a tab is given ends with the tab, not with the page. */
+function forTab(page: PageContext): { context: Context; end: () => void } {
+  const gone = new AbortController();
+  const ends: (() => void)[] = [];
+  const context: Context = {
+    ...page,
+    get place() {
+      return page.place;
+    },
+    signal: gone.signal,
+    state: { ...page.state, onChange: (listener) => page.state.onChange(() => gone.signal.aborted || listener()) },
+    onFolder: (listener) => page.onFolder((it) => gone.signal.aborted || listener(it)),
+    offer: (...commands) => {
+      const take = page.offer(...commands);
+      ends.push(take);
+      return take;
+    },
+  };
+  return {
+    context,
+    end: () => {
+      gone.abort();
+      for (const it of ends) it();
+    },
+  };
+}
+
+/** Times are told in whole seconds. */
+function isNewer(now: WorkspaceRecording, then: WorkspaceRecording): boolean {
+  return now.modified > then.modified || (now.modified === then.modified && now.bytes !== then.bytes);
+}

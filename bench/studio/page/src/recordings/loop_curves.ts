@@ -1,0 +1,28 @@
+import type { Loops } from "../api/recordings";
+import { lineOf, type FigureCurve } from "../ui/figure_description";
+import { looks } from "../ui/palette";
+
+export type Kind = "all" | "one" | "average";
+
+/**
+ * Lines of one of several recordings: solid, since they were measured; closing thick, opening thin. One laid over others
+ * (`look` > 0) is its average where they show all cycles.
+ */
+export function loopCurves(loops: Loops, kind: Kind, look: number, recording: string): FigureCurve[] {
+  const colour = looks[look % looks.length]!;
+  const marked = recording !== "";
+  const of = (what: string): string => [recording, what].filter(Boolean).join(", ");
+  if (loops.whole)
+    return [lineOf(recording, loops.whole.position, loops.whole.force, { colour, width: 1, name: of("all rows") })];
+  const { position, closing, opening } = loops.average;
+  if (kind === "average" || (kind === "all" && look > 0)) {
+    return [
+      lineOf(of("closing"), position, closing, { colour, width: 2.75, marked }),
+      lineOf(of("opening"), position, opening, { colour, width: 1.25, marked }),
+    ];
+  }
+  const width = kind === "one" ? 2 : 0.8;
+  return loops.loops.map((it, k) =>
+    lineOf(k === 0 ? recording : "", it.position, it.force, { colour, width, name: of(`cycle ${it.cycle}`) }),
+  );
+}

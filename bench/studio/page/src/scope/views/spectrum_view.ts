@@ -1,0 +1,119 @@
+import type { Api } from "../../api/api";
+import type { Trace } from "../../api/recordings";
+import { inWords } from "../../recordings/trace_groups";
+import { element, labelled, select } from "../../ui/dom";
+import { Latest } from "../../ui/latest";
+import { plain, withUnit } from "../../ui/numbers";
+import { palette } from "../../ui/palette";
+import { clipTo, drawAxes } from "./canvas_axes";
+import { peakOf, powerOfTwo, spectrumOf, type Spectrum } from "./spectrum";
+
+const every_ms = 400;
+const mostRows = 8192;
+const mostColumns = 10000; // of one question: a row at both ends more than is asked for finds room
+
+/** The amplitude spectrum of a trace over the stretch that the scope shows, tick by tick: asked for a few times a second. */
+export class SpectrumView {
+  readonly root: HTMLElement;
+  private readonly canvas = element("canvas", {
+    class: "scope_canvas",
+    role: "img",
+    "aria-label": "Amplitude over frequency",
+  });
+  private readonly trace = select([], "", () => this.choose());
+  private readonly reading = element("p", { class: "scope_reading", role: "status" });
+  private readonly answers: Latest;
+  private traces: readonly Trace[] = [];
+  private spectrum: Spectrum | null = null;
+  private asked = 0;
+  private later = 0;
+
+  constructor(
+    private readonly api: Api,
+    signal: AbortSignal,
+    private wanted: string,
+    private readonly changed: (trace: string) => void,
+    private readonly complain: (error: unknown) => void,
+  ) {
+    this.answers = new Latest(signal);
+    signal.addEventListener("abort", () => clearTimeout(this.later));
+    this.root = element(
+      "div",
+      { class: "scope_view", hidden: true },
+      element("div", { class: "scope_bar" }, labelled("Spectrum of", this.trace), this.reading),
+      this.canvas,
+    );
+  }
+
+  offer(traces: readonly Trace[]): void {
+    this.traces = traces;
+    const first = (start: string): string | undefined => traces.find((it) => it.name.startsWith(start))?.name;
+    const usual = first("force_measured") ?? first("force_commanded") ?? traces[0]?.name ?? "";
+    const chosen = traces.some((it) => it.name === this.wanted) ? this.wanted : usual;
+    this.trace.replaceChildren(
+      ...traces.map((it) => element("option", { value: it.name, selected: it.name === chosen }, inWords(it.name))),
+    );
+    this.spectrum = null;
+    this.asked = 0;
+  }
+
+  /** The stretch has moved; the last one's spectrum stands until the new one's is there. */
+  draw(from: number, to: number, rate_hz: number): void {
+    this.paint();
+    const now = performance.now();
+    clearTimeout(this.later);
+    if (now - this.asked < every_ms) {
+      this.later = window.setTimeout(() => this.draw(from, to, rate_hz), every_ms); // where nothing moves any more
+      return;
+    }
+    this.asked = now;
+    const number = this.traces.findIndex((it) => it.name === this.trace.value);
+    const rows = Math.min(mostRows, powerOfTwo((to - from) * rate_hz));
+    if (number < 0 || rows < 16) return;
+    const range = { from: to - rows / rate_hz, to, columns: mostColumns };
+    this.answers
+      .ask((signal) => this.api.view("/api/live/view", { traces: String(number), ...range }, signal))
+      .then((view) => {
+        if (!view) return;
+        this.spectrum = view.rowsPerColumn <= 1 ? spectrumOf(view.traces[0]?.largest ?? [], 1 / rate_hz) : null;
+        this.paint();
+      }, this.complain);
+  }
+
+  private choose(): void {
+    this.wanted = this.trace.value;
+    this.spectrum = null;
+    this.asked = 0;
+    this.changed(this.wanted);
+  }
+
+  private paint(): void {
+    const { spectrum } = this;
+    if (!spectrum || this.root.hidden) return;
+    const { amplitude, step_hz } = spectrum;
+    const trace = this.traces.find((it) => it.name === this.trace.value);
+    const unit = trace?.unit ?? "";
+    const peak = peakOf(spectrum);
+    const top = Math.max(peak.amplitude, 1e-9) * 2;
+    const text =
+      peak.amplitude < 1e-12
+        ? "It does not change."
+        : `Largest: ${withUnit(peak.amplitude, unit)} at ${plain(peak.hz, 4)} Hz; lines ${plain(step_hz, 3)} Hz apart`;
+    if (this.reading.textContent !== text) this.reading.textContent = text;
+    const axes = drawAxes(
+      this.canvas,
+      { from: step_hz, to: step_hz * amplitude.length, unit: "Hz", name: "frequency", logarithmic: true },
+      { from: top * 1e-5, to: top, unit, name: `amplitude of ${inWords(this.trace.value)}`, logarithmic: true },
+    );
+    if (!axes) return;
+    const { context } = axes;
+    clipTo(axes);
+    context.strokeStyle = palette().lines[0]!;
+    context.lineWidth = 1.5;
+    context.beginPath();
+    for (let k = 1; k < amplitude.length; ++k)
+      context.lineTo(axes.x(k * step_hz), axes.y(Math.max(amplitude[k]!, top * 1e-6)));
+    context.stroke();
+    context.restore();
+  }
+}

@@ -1,0 +1,144 @@
+import type { Workspace, WorkspaceFile, WorkspaceRecording, WorkspaceSession } from "../../api/workspace";
+import type { StudyEntry } from "../../api/studies";
+import { stemOf } from "../../results/of_recording/files";
+import { folderOf, resultName } from "../../results/names";
+import { plain } from "../../ui/numbers";
+import { bytes, length } from "../../recordings/recording_list";
+
+export type Kind = "recordings" | "studies" | "sessions";
+export type Order = "newest" | "name" | "longest" | "largest";
+
+/** A line of the list: what it is called, what is told of it, and where it leads. */
+export interface Entry {
+  readonly id: string;
+  readonly name: string;
+  readonly address: string;
+  readonly facts: string;
+  /** Marks in words, each with a class: "fit", "not closed". */
+  readonly marks: readonly string[];
+  readonly modified: string;
+  readonly seconds: number;
+  readonly bytes: number;
+}
+
+export const kinds: readonly (readonly [Kind, string])[] = [
+  ["recordings", "Recordings"],
+  ["studies", "Studies"],
+  ["sessions", "Sessions"],
+];
+
+export const orders: readonly { value: Order; text: string }[] = [
+  { value: "newest", text: "Newest" },
+  { value: "name", text: "Name" },
+  { value: "longest", text: "Longest" },
+  { value: "largest", text: "Largest" },
+];
+
+/** Which kinds of result a recording of that stem has: "cut" -> fit, chart. */
+function resultsByStem(files: readonly WorkspaceFile[]): Map<string, Set<string>> {
+  const found = new Map<string, Set<string>>();
+  for (const it of files) {
+    if (it.kind !== "fit" && it.kind !== "chart" && it.kind !== "choice") continue;
+    const stem = (resultName(it).split("/").pop() ?? "").replace(/(-\d+)?\.[a-z]+$/, "");
+    const of = found.get(stem) ?? new Set();
+    found.set(stem, of.add(it.kind));
+  }
+  return found;
+}
+
+function recordingEntry(it: WorkspaceRecording, results: Map<string, Set<string>>): Entry {
+  const facts = [it.seconds === undefined ? bytes(it.bytes) : length(it.seconds), since(it.modified)];
+  return {
+    id: it.id,
+    name: it.name,
+    address: `#/recording/${it.id}/time`,
+    facts: facts.filter(Boolean).join(" · "),
+    marks: it.partial ? ["not closed"] : [...(results.get(stemOf(it.name)) ?? [])],
+    modified: it.modified,
+    seconds: it.seconds ?? 0,
+    bytes: it.bytes,
+  };
+}
+
+function sessionEntry(it: WorkspaceSession): Entry {
+  const state = it.finished ? "finished" : it.answered > 0 ? `${it.answered} trials done` : "not begun";
+  return {
+    id: it.id,
+    name: it.name,
+    address: `#/sessions/${it.id}`,
+    facts: it.error || [it.subject && `subject ${it.subject}`, state].filter(Boolean).join(" · "),
+    marks: it.error ? ["unreadable"] : [],
+    modified: "",
+    seconds: it.answered,
+    bytes: 0,
+  };
+}
+
+function studyEntry(file: WorkspaceFile, known: StudyEntry | undefined): Entry {
+  const facts = known && !known.error ? `${known.recordings} recordings · ${known.tissues.slice(0, 2).join(", ")}` : "";
+  return {
+    id: file.id,
+    name: known?.name ?? (folderOf(file.name) || file.name),
+    address: `#/studies/${file.id}`,
+    facts: known?.error ? "cannot be read" : facts,
+    marks: known ? [known.error ? "unreadable" : known.state] : [],
+    modified: known?.run_at ?? "",
+    seconds: known?.recordings ?? 0,
+    bytes: known?.files ?? 0,
+  };
+}
+
+export function entriesOf(kind: Kind, workspace: Workspace, studies: readonly StudyEntry[]): Entry[] {
+  switch (kind) {
+    case "recordings": {
+      const results = resultsByStem(workspace.files);
+      return workspace.recordings.map((it) => recordingEntry(it, results));
+    }
+    case "studies":
+      return workspace.files
+        .filter((it) => it.kind === "study")
+        .map((it) =>
+          studyEntry(
+            it,
+            studies.find((each) => each.id === it.id),
+          ),
+        );
+    case "sessions":
+      return workspace.sessions.map(sessionEntry);
+  }
+}
+
+export function countOf(kind: Kind, workspace: Workspace): number {
+  if (kind === "studies") return workspace.files.filter((it) => it.kind === "study").length;
+  return workspace[kind].length;
+}
+
+const byOrder: Record<Order, (a: Entry, b: Entry) => number> = {
+  newest: (a, b) => (a.modified < b.modified ? 1 : a.modified > b.modified ? -1 : 0),
+  name: () => 0, // as the names go, which all orders fall back to
+  longest: (a, b) => b.seconds - a.seconds,
+  largest: (a, b) => b.bytes - a.bytes,
+};
+const names = new Intl.Collator("en", { numeric: true });
+
+/** Those whose name, facts or marks have every word, in the order asked for. */
+export function chosen(entries: readonly Entry[], words: string, order: Order): Entry[] {
+  const wanted = words.trim().toLowerCase().split(/\s+/);
+  const has = (it: Entry): boolean => {
+    const text = `${it.name} ${it.facts} ${it.marks.join(" ")}`.toLowerCase();
+    return wanted.every((word) => text.includes(word));
+  };
+  return entries.filter(has).sort((a, b) => byOrder[order](a, b) || names.compare(a.name, b.name));
+}
+
+/** "4 min ago", "3 Nov", "3 Nov 2024". */
+export function since(iso: string, now = new Date()): string {
+  const at = new Date(iso);
+  if (Number.isNaN(at.getTime())) return iso;
+  const seconds = (now.getTime() - at.getTime()) / 1000;
+  if (seconds >= 0 && seconds < 60) return "just now";
+  if (seconds >= 0 && seconds < 3600) return `${plain(Math.floor(seconds / 60))} min ago`;
+  if (seconds >= 0 && seconds < 12 * 3600) return `${plain(Math.floor(seconds / 3600))} h ago`;
+  const year = at.getFullYear() === now.getFullYear() ? {} : { year: "numeric" as const };
+  return at.toLocaleDateString("en-GB", { day: "numeric", month: "short", ...year });
+}

@@ -1,0 +1,38 @@
+import type { View } from "../ui/view";
+import { chart } from "../views/chart";
+import { devices } from "../views/devices";
+import { editor } from "../views/editor";
+import { fits } from "../views/fits";
+import { importView } from "../views/import";
+import { recording } from "../views/recording";
+import { recordings } from "../views/recordings";
+import { scope } from "../views/scope";
+import { sessions } from "../views/sessions";
+import { stability } from "../views/stability";
+import { studies } from "../views/studies";
+import { sweeps } from "../views/sweeps";
+import { work } from "../views/work";
+
+/** The pages of the bar, in its order. */
+export const pages: readonly View[] = [
+  scope,
+  recordings,
+  importView,
+  stability,
+  studies,
+  sweeps,
+  sessions,
+  devices,
+  work,
+];
+
+/** Reached by a link: a recording, and what addresses of earlier versions name. */
+export const hiddenPages: readonly View[] = [recording, editor, fits, chart];
+
+/** The page of the bar that such a one belongs to. */
+export const belongsTo: Readonly<Record<string, string>> = {
+  recording: "recordings",
+  editor: "recordings",
+  fits: "recordings",
+  chart: "recordings",
+};

@@ -1,0 +1,75 @@
+import { drawn, element } from "../dom";
+import type { Colour, Figure, FigureArea, FigureCurve } from "../figure_description";
+import { markPath } from "../marks";
+import { groundOf } from "./cells";
+import { dashOf, isLine, markShape } from "./draw";
+import { nodeOf, type Shape } from "./shapes";
+import type { Style } from "./style";
+
+/** A sample of what is drawn, so wide and high, from its upper left corner; and what it is called. */
+export interface Entry {
+  label: string;
+  sample: (x: number, y: number, width: number, height: number, style: Style) => Shape[];
+}
+
+const finite = (value: number | null | undefined): boolean => Number.isFinite(value);
+
+/** What of a figure has a name; each once. */
+export function entriesOf({ cells, areas = [], curves }: Figure): Entry[] {
+  const entries: Entry[] = cells.kinds.map((kind) => ({
+    label: kind.label,
+    sample: (x, y, width, height, style) => groundOf([{ x, y, width, height }], kind, style),
+  }));
+  for (const area of areas) if (area.label) entries.push({ label: area.label, sample: areaSample(area) });
+  for (const curve of curves) {
+    if (!curve.label) continue;
+    const there = curve.y.some((y, i) => finite(y) && finite(curve.x[i]));
+    entries.push({ label: curve.label + (there ? "" : " (nowhere here)"), sample: curveSample(curve) });
+  }
+  return entries.filter((it, i) => entries.findIndex((other) => other.label === it.label) === i);
+}
+
+/** The shape in the middle of a sample. */
+function shapeOf(colour: Colour, x: number, y: number, style: Style): Shape {
+  return {
+    kind: "path",
+    class: `sample ${colour}`,
+    d: markPath(colour, x, y, 0.28 * style.text),
+    fill: style.colours[colour],
+  };
+}
+
+function areaSample({ colour, extremes, marked }: FigureArea): Entry["sample"] {
+  return (x, y, width, height, style) => {
+    const fill = style.colours[colour];
+    const shape = marked ? [shapeOf(colour, x + width / 2, y + height / 2, style)] : [];
+    const d = extremes ? `M${x} ${y + height / 2}h${width}` : `M${x} ${y}h${width}v${height}h${-width}Z`;
+    if (extremes)
+      return [{ kind: "path", class: `sample ${colour}`, d, stroke: fill, width: 2 * style.lines }, ...shape];
+    return [{ kind: "path", class: "area", d, fill, opacity: 0.16, stroke: fill, width: style.hair }];
+  };
+}
+
+function curveSample(curve: FigureCurve): Entry["sample"] {
+  return (x, y, width, height, style) => {
+    if (!isLine(curve)) return [markShape(curve, x + width / 2, y + height / 2, style)];
+    const line: Shape = {
+      kind: "path",
+      class: `sample ${curve.colour}`,
+      d: `M${x} ${y + height / 2}h${width}`,
+      stroke: style.colours[curve.colour],
+      width: Math.max(style.hair, style.lines * curve.width),
+      ...(curve.dashed ? { dash: dashOf(style) } : {}),
+    };
+    return curve.marked ? [line, shapeOf(curve.colour, x + width / 2, y + height / 2, style)] : [line];
+  };
+}
+
+/** The legend beneath a plot. */
+export function legendItems(figure: Figure, style: Style): HTMLElement[] {
+  return entriesOf(figure).map(({ label, sample }) => {
+    const picture = drawn("svg", { viewBox: "0 0 34 22", width: 34, height: 22, "aria-hidden": "true" });
+    picture.append(...sample(1, 3, 32, 16, style).map(nodeOf));
+    return element("li", {}, picture, element("span", {}, label));
+  });
+}

@@ -1,0 +1,181 @@
+// The scope as an instrument: trigger, cursors, views, markers, deadlines, and what it shows of a loop that has ended.
+
+import { existsSync } from "node:fs";
+import { join } from "node:path";
+
+import { audit } from "./accessibility.mjs";
+import { expect, expectEqual, expectNoComplaints, openPage, until } from "./harness.mjs";
+
+async function openScope(browser, studio, state = "", options = {}) {
+  const page = await openPage(browser, options);
+  await page.goto(studio.page(`scope${state}`));
+  await page.getByRole("heading", { name: "Scope" }).waitFor();
+  return page;
+}
+
+async function startLoop(studio) {
+  expectEqual((await studio.api("/api/live/start", { device: "sim:scissors" })).status, 200, "the loop starts");
+  await until("it runs", async () => (await studio.api("/api/live/status")).json.ticks > 3000);
+}
+
+const reading = (page) => page.locator(".time_reading").textContent();
+
+export const tests = {
+  async "a trigger holds the window about an edge"({ browser, studio, screenshots }) {
+    await studio.serve();
+    await startLoop(studio);
+    const state = "?trigger=single&channel=position+theta&edge=rising&level=0.3";
+    const page = await openScope(browser, studio, state);
+    await page.getByText(/^triggered at \d+\.\d{3} s$/).waitFor();
+    await page.getByRole("button", { name: "Go on" }).waitFor();
+    expect(/^−1\.0+ s to 4\.0+ s/.test(await reading(page)), await reading(page));
+    // At the trigger the position goes up through the level.
+    const at = Number(/[\d.]+/.exec(await page.locator(".scope_trigger .scope_reading").textContent())[0]);
+    const traces = (await studio.api("/api/live/traces")).json;
+    const position = traces.findIndex((it) => it.name === "position theta");
+    const answer = await fetch(
+      `${studio.origin}/api/live/view?traces=${position}&from=${at - 0.02}&to=${at + 0.0201}&columns=100`,
+      { headers: { "X-Kerf-Token": studio.token } },
+    );
+    const bytes = await answer.arrayBuffer();
+    const [columns] = new Uint32Array(bytes, 0, 1);
+    const values = new Float32Array(bytes, 16 + 8 * columns, columns);
+    expect(values[0] < 0.3 && values[columns - 1] > 0.3, `it rises: ${values[0]} to ${values[columns - 1]}`);
+    await page.screenshot({ path: join(screenshots, "scope_trigger.png") });
+    await page.getByRole("button", { name: "Go on" }).click();
+    await page.getByRole("button", { name: "Go on" }).waitFor(); // and has it again
+    await page.getByLabel("Trigger").selectOption("off");
+    await page.getByRole("button", { name: "Go on" }).click();
+    await page.getByRole("button", { name: "Pause" }).waitFor();
+    await until("the address has no trigger any more", () => !page.url().includes("trigger="));
+    expectNoComplaints(page);
+  },
+
+  async "a level that is never met waits, or lets time run"({ browser, studio }) {
+    await studio.serve();
+    await startLoop(studio);
+    const page = await openScope(browser, studio, "?trigger=normal&channel=position+theta&level=99");
+    await page.getByText("waiting", { exact: true }).waitFor();
+    const plots = page.locator(".time_plots").first();
+    const look = async () => (await plots.screenshot()).toString("base64");
+    const first = await look();
+    await until("time runs until the first", async () => (await look()) !== first);
+  },
+
+  async "two cursors tell what lies between them"({ browser, studio, screenshots }) {
+    await studio.serve();
+    await startLoop(studio);
+    const page = await openScope(browser, studio);
+    await page.getByRole("button", { name: "Pause" }).click();
+    const box = await page.locator(".time_over").first().boundingBox();
+    await page.mouse.move(box.x + 0.25 * box.width, box.y + 5);
+    await page.getByRole("button", { name: "A here" }).focus();
+    await page.keyboard.press("Enter");
+    await page.mouse.move(box.x + 0.75 * box.width, box.y + 5);
+    await page.getByRole("button", { name: "B here" }).focus();
+    await page.keyboard.press("Enter");
+    const text = await until("the difference is told", async () => {
+      const it = await page.locator(".scope_cursors .scope_reading").textContent();
+      return it.startsWith("B − A: ") ? it : null;
+    });
+    const apart = Number(/B − A: ([\d.]+) s/.exec(text)?.[1]);
+    expect(Math.abs(apart - 2.5) < 0.05, `half of the window: ${text}`);
+    expect(text.includes("0.4"), `its inverse: ${text}`);
+    const row = page.locator(".scope_cursors tr", { hasText: "position theta" });
+    const number = async (k) => (await row.locator("td").nth(k).textContent()).replace("−", "-");
+    const value = (it) => parseFloat(it) * (it.includes("mrad") ? 1e-3 : it.includes("µrad") ? 1e-6 : 1);
+    const [a, b, difference] = [value(await number(0)), value(await number(1)), value(await number(2))];
+    expect(Math.abs(b - a - difference) < 2e-3, `${b} - ${a} is ${difference}`);
+    await page.screenshot({ path: join(screenshots, "scope_cursors.png") });
+    await page.getByRole("button", { name: "No cursors" }).click();
+    await page.locator(".scope_cursors table").waitFor({ state: "hidden" });
+  },
+
+  async "force over position, and the spectrum, are views that a link opens again"({ browser, studio, screenshots }) {
+    await studio.serve();
+    await startLoop(studio);
+    const page = await openScope(browser, studio);
+    await page.getByRole("button", { name: "XY" }).click();
+    await page.locator(".scope_canvas").first().waitFor();
+    const drawn = async () => (await page.locator(".scope_view:not([hidden]) canvas").screenshot()).toString("base64");
+    const first = await drawn();
+    await until("it moves", async () => (await drawn()) !== first);
+    await page.screenshot({ path: join(screenshots, "scope_xy.png") });
+    await page.getByRole("button", { name: "Spectrum" }).click();
+    expect(page.url().includes("view=spectrum"), page.url());
+    await page.getByLabel("Spectrum of").selectOption("position theta");
+    await page.getByText(/Largest: .* Hz/).waitFor();
+    await page.screenshot({ path: join(screenshots, "scope_spectrum.png") });
+    await page.goBack();
+    await page.locator(".scope_view:not([hidden]) >> text=Across").waitFor();
+    await page.goForward();
+    await page.reload();
+    await page.getByText(/Largest: .* Hz/).waitFor();
+    expectEqual(await page.getByLabel("Spectrum of").inputValue(), "position theta", "what the link says");
+    expectNoComplaints(page);
+  },
+
+  async "a marker goes into the recording"({ browser, studio }) {
+    await studio.serve();
+    await startLoop(studio);
+    const page = await openScope(browser, studio);
+    await studio.api("/api/live/record", { name: "marked" });
+    await until("rows are recorded", async () => (await studio.api("/api/live/status")).json.recording?.rows > 100);
+    await page.getByLabel("Marker").fill("the tissue tears");
+    await page.getByRole("button", { name: "Mark", exact: true }).click();
+    await page.locator(".event_list").getByText("mark: the tissue tears").waitFor();
+    await studio.api("/api/live/record/stop", {});
+    await until("the recording is there", () => existsSync(join(studio.folder, "marked.h5")));
+    expectEqual(studio.kerf("validate", "marked.h5").status, 0, "kerf validate marked.h5");
+    const id = await until("it is in the list", () => studio.id("recordings", "marked.h5"));
+    const { events } = (await studio.api(`/api/recording?id=${id}`)).json;
+    const mark = events.find((it) => it.kind === "mark");
+    expectEqual(mark?.text, "the tissue tears", "what is in the file");
+    expectEqual((await studio.api("/api/live/mark", { text: "two\nlines" })).status, 400, "two lines");
+    await studio.api("/api/live/stop", {});
+    await until("it has stopped", async () => !(await studio.api("/api/live/status")).json.running);
+    expectEqual((await studio.api("/api/live/mark", { text: "late" })).status, 409, "without a loop");
+  },
+
+  async "deadlines are told, and a loop that has ended is not shown as one that runs"({
+    browser,
+    studio,
+    screenshots,
+  }) {
+    await studio.serve();
+    await startLoop(studio);
+    const page = await openScope(browser, studio);
+    await page.getByText(/Deadlines: \d+ missed, \d+ late of \d+ /).waitFor();
+    await studio.api("/api/live/stop", {});
+    await page.getByText("Stopped: this is the end of the last loop.").waitFor();
+    expect(await page.locator(".scope_page.is_stopped").isVisible(), "it is grey");
+    await page.screenshot({ path: join(screenshots, "scope_stopped.png") });
+    await page.reload();
+    await page.getByText("Stopped: this is the end of the last loop.").waitFor();
+    await startLoop(studio);
+    await until("it runs again", async () => !(await page.locator(".scope_page.is_stopped").count()));
+    expectNoComplaints(page);
+  },
+
+  async "every view of the scope is fit to be seen, in light and dark"({ browser, studio, screenshots }) {
+    await studio.serve();
+    await startLoop(studio);
+    const states = {
+      instrument: "?trigger=auto&channel=position+theta&level=0.3",
+      xy: "?view=xy",
+      spectrum: "?view=spectrum",
+    };
+    const complaints = [];
+    for (const colorScheme of ["light", "dark"]) {
+      for (const [name, state] of Object.entries(states)) {
+        const page = await openScope(browser, studio, state, { colorScheme, reducedMotion: "reduce" });
+        await page.waitForTimeout(5500); // until the window is full
+        await page.screenshot({ path: join(screenshots, `scope_${name}-${colorScheme}.png`) });
+        for (const it of await audit(page, { focus: false })) complaints.push(`${name} ${colorScheme}: ${it}`);
+        expectNoComplaints(page);
+        await page.context().close();
+      }
+    }
+    expectEqual(complaints, [], "what is not accessible");
+  },
+};

@@ -1,0 +1,255 @@
+// Files of other programs taken in by the page: dropped, looked at, mapped, imported, as `kerf import` does it.
+
+import { spawnSync } from "node:child_process";
+import { existsSync, truncateSync, writeFileSync } from "node:fs";
+import { mkdir, rm } from "node:fs/promises";
+import { join } from "node:path";
+
+import { audit } from "../accessibility.mjs";
+import { expect, expectEqual, expectNoComplaints, openPage, until } from "../harness.mjs";
+
+/** A press in four cycles, as a logger writes it; two lines are none, one stands twice. */
+export function press(rows = 4000) {
+  const lines = ["Bench 7, run 3", "Time,Angle,Load", "ms,deg,N"];
+  for (let i = 0; i < rows; ++i) {
+    const turn = (2 * Math.PI * i) / (rows / 4);
+    const closing = Math.sin(turn) >= 0;
+    const angle = 10 * (1 - Math.cos(turn));
+    lines.push(`${i},${angle.toFixed(4)},${(0.2 * angle + (closing ? 1 : 0.1)).toFixed(4)}`);
+    if (i === 9) lines.push("the tool was lifted");
+    if (i === 19) lines.push(lines.at(-1));
+  }
+  return `${lines.join("\n")}\n`;
+}
+
+async function prepare({ browser, studio }, options = {}) {
+  if (!studio.process) await studio.serve();
+  const page = await openPage(browser, options);
+  await page.goto(studio.page("import"));
+  await page.waitForSelector("main.import input[type=file]", { state: "attached" });
+  return page;
+}
+
+async function source(studio, name, text) {
+  const folder = join(studio.folder, "..", `${studio.folder.split("/").at(-1)}-from`);
+  await mkdir(folder, { recursive: true });
+  const file = join(folder, name);
+  writeFileSync(file, text);
+  return file;
+}
+
+const choose = (page, ...files) => page.setInputFiles("main.import input[type=file]", files);
+const fits = (page) => until("it fits", async () => (await page.textContent(".verdict")).startsWith("It fits"));
+
+async function importAll(page) {
+  await page.getByRole("button", { name: /^Import/ }).click();
+  await until("it is imported", async () => (await page.locator(".file_list li.file_done").count()) > 0);
+}
+
+export const tests = {
+  async ImportsAFileAsTheProgramDoes({ browser, studio }) {
+    const page = await prepare({ browser, studio });
+    const file = await source(studio, "Schnitt 3 (Süd).csv", press());
+    await choose(page, file);
+    await fits(page);
+    expectEqual(
+      await page.inputValue("input.map"),
+      "time=1[ms],position=2[deg],force=3[N]",
+      "columns and units that the header says",
+    );
+    expectEqual(await page.inputValue(".file_naming input"), "Schnitt-3-Sud", "the name of the recording");
+    const left = await page.locator("tr.line_no_data th, tr.line_misplaced th").allTextContents();
+    expectEqual(left, ["✕ 14", "✕ 25"], "lines that are left out, marked where they are");
+    await page.fill(".file_naming input", "press");
+    await importAll(page);
+    const verb = studio.kerfOrThrow("import", file, "--map", "time=1,position=2,force=3", "-o", "by_verb.h5", "--json");
+    const about = JSON.parse(verb.stdout);
+    const said = await page.locator(".imported .warnings li span:last-child").allTextContents();
+    expectEqual(said, about.warnings, "warnings are the program's");
+    const [here, there] = ["press.h5", "by_verb.h5"].map((it) =>
+      JSON.parse(studio.kerfOrThrow("info", it, "--json").stdout),
+    );
+    for (const key of ["samples", "duration_s", "channels", "source"]) expectEqual(here[key], there[key], key);
+    await page.waitForSelector(".imported .time_plot");
+    await page.getByRole("link", { name: "Open it" }).click();
+    await page.waitForSelector("main.recording .time_plot");
+    expectEqual(await page.textContent("h1"), "press.h5", "the recording is opened");
+    expectNoComplaints(page);
+  },
+
+  async MapsColumnsByHandAndKeepsTheMapping({ browser, studio }) {
+    const page = await prepare({ browser, studio });
+    await choose(page, await source(studio, "plain.txt", press().split("\n").slice(3).join("\n")));
+    await until("it is looked at", async () => (await page.locator(".preview thead th").count()) === 5);
+    await page.selectOption(".preview thead th:nth-child(2) select", "time");
+    await page.fill(".preview thead th:nth-child(2) input.unit", "ms");
+    await page.selectOption(".preview thead th:nth-child(3) select", "position");
+    await page.fill(".preview thead th:nth-child(3) input.unit", "deg");
+    await page.selectOption(".preview thead th:nth-child(4) select", "force");
+    await page.fill(".preview thead th:nth-child(4) input.unit", "kg");
+    await until("what does not fit is said", async () =>
+      (await page.textContent(".verdict.wrong").catch(() => "")).includes("is not a unit of force"),
+    );
+    await page.fill(".preview thead th:nth-child(4) input.unit", "N");
+    await fits(page);
+    expectEqual(await page.inputValue("input.map"), "time=1[ms],position=2[deg],force=3[N]", "the map");
+    await page.fill("input[aria-label='Name to save the mapping under']", "bench7");
+    await page.getByRole("button", { name: "Save mapping" }).click();
+    await until("it is saved", () => existsSync(join(studio.folder, "bench7.import.toml")));
+    const file = await source(studio, "again.txt", press());
+    studio.kerfOrThrow("import", file, "--map", "bench7.import.toml", "-o", "again.h5");
+    await page.reload();
+    await until("it is offered", async () =>
+      (await page.locator(".mapping option").allTextContents()).includes("bench7"),
+    );
+    expectNoComplaints(page);
+  },
+
+  async SaysAtItsPlaceWhatIsWrong({ browser, studio }) {
+    studio.record("taken.h5", 2);
+    const page = await prepare({ browser, studio });
+    await choose(
+      page,
+      await source(studio, "photo.png", "\x89PNG\r\n\x1a\n"),
+      await source(studio, "words.txt", "only words\nand more\n"),
+      await source(studio, "empty.csv", ""),
+      await source(studio, "good.csv", press(400)),
+    );
+    const said = (name) => page.locator(".file_list li", { hasText: name }).locator(".file_said").textContent();
+    await until("the empty one is refused", async () => (await said("empty.csv")).includes("the file is empty"));
+    for (const [name, why] of [
+      ["photo.png", /./],
+      ["words.txt", /words.txt: no line of numbers/],
+    ]) {
+      await page.locator(".file_list .file_name", { hasText: name }).click();
+      await until(`${name} is refused in one line`, async () => why.test(await said(name)));
+    }
+    await page.locator(".file_list .file_name", { hasText: "good.csv" }).click();
+    await fits(page);
+    const name = page.getByLabel("Name of the recording of good.csv");
+    await name.fill("taken");
+    await until("the clash is said where it is typed", async () =>
+      (await said("good.csv")).includes("taken.h5 is there already"),
+    );
+    expect(await page.getByRole("button", { name: /^Import/ }).isDisabled(), "nothing can be imported yet");
+    await name.fill("a/b");
+    await until("so is a name that cannot be", async () => (await said("good.csv")).includes("letters, digits"));
+    await name.fill("good");
+    await importAll(page);
+    expect(existsSync(join(studio.folder, "good.h5")), "the good one has come in");
+    expectNoComplaints(page, [/400/]);
+  },
+
+  async TakesDroppedFilesFromAnyPage({ browser, studio }) {
+    await studio.serve();
+    const page = await openPage(browser);
+    await page.goto(studio.page("studies"));
+    await page.waitForSelector("h1");
+    await page.evaluate((text) => {
+      const files = new DataTransfer();
+      for (const name of ["a.csv", "b.csv"]) files.items.add(new File([text], name));
+      const event = (type) => new DragEvent(type, { dataTransfer: files, bubbles: true, cancelable: true });
+      document.body.dispatchEvent(event("dragover"));
+      document.body.dispatchEvent(event("drop"));
+    }, press(400));
+    await until("both are there", async () => (await page.locator(".file_list li.file_ready").count()) === 2);
+    await fits(page);
+    await page.getByRole("button", { name: "Import 2 files" }).click();
+    await until("both are imported", async () => (await page.locator(".file_list li.file_done").count()) === 2);
+    expect(
+      existsSync(join(studio.folder, "a.h5")) && existsSync(join(studio.folder, "b.h5")),
+      "both recordings are there",
+    );
+    expectNoComplaints(page);
+  },
+
+  async GoesOnAfterAStallAndAfterARestart({ browser, studio }) {
+    const page = await prepare({ browser, studio });
+    let pieces = 0;
+    let broken = 0;
+    await page.route("**/api/import/piece*", (route) => {
+      ++pieces;
+      if (pieces === 2 || pieces === 3) {
+        ++broken;
+        return route.abort("connectionreset");
+      }
+      return pieces > 5 ? new Promise(() => {}) : route.continue(); // then the network stalls
+    });
+    const text = press(120000);
+    const file = await source(studio, "long.csv", text);
+    await choose(page, file);
+    await until("it stalls", () => pieces > 5);
+    expectEqual(broken, 2, "broken pieces, after which it went on");
+    const { uploads } = (await studio.api("/api/import")).json;
+    expect(
+      uploads[0].have > 0 && uploads[0].have < text.length,
+      `${uploads[0].have} of ${text.length} bytes have come`,
+    );
+    await page.context().close();
+    await studio.stop("SIGKILL");
+    await studio.serve();
+    const again = await prepare({ browser, studio });
+    await until("it is still there", async () =>
+      ((await again.textContent(".file_list .file_said").catch(() => "")) ?? "").includes("goes on where it stopped"),
+    );
+    let first = null;
+    again.on("request", (it) => {
+      if (it.url().includes("/api/import/piece")) first ??= Number(new URL(it.url()).searchParams.get("at"));
+    });
+    await choose(again, file);
+    await fits(again);
+    expectEqual(first, uploads[0].have, "where the next piece begins");
+    await importAll(again);
+    const { samples } = JSON.parse(studio.kerfOrThrow("info", "long.h5", "--json").stdout);
+    expectEqual(samples, 120000, "rows");
+  },
+
+  async RefusesWhatIsTooLargeBeforeAnyOfItIsSent({ browser, studio }) {
+    const page = await prepare({ browser, studio });
+    const file = await source(studio, "huge.csv", "");
+    truncateSync(file, 5 * 2 ** 30); // takes no room of the disk
+    let pieces = 0;
+    page.on("request", (it) => (pieces += it.url().includes("/api/import/piece") ? 1 : 0));
+    await choose(page, file);
+    await until("it is refused in one line", async () =>
+      ((await page.textContent(".file_said").catch(() => "")) ?? "").includes("kerf import --max-bytes"),
+    );
+    expectEqual(pieces, 0, "pieces that were sent");
+    await rm(file);
+    expectNoComplaints(page, [/413/]);
+  },
+
+  async StopsAnImport({ browser, studio }) {
+    const page = await prepare({ browser, studio });
+    const files = [];
+    for (let i = 0; i < 30; ++i) files.push(await source(studio, `many${i}.csv`, press(400)));
+    await choose(page, ...files);
+    await until("all have come", async () => (await page.locator(".file_list li.file_ready").count()) === 30);
+    await fits(page);
+    await page.getByRole("button", { name: "Import 30 files" }).click();
+    await page.locator(".import_job button").click();
+    await until("it has ended", async () => (await page.locator(".file_list li.file_importing").count()) === 0);
+    const done = await page.locator(".file_list li.file_done").count();
+    expect(done < 30, `${done} came in`);
+    const listed = spawnSync("ls", [studio.folder], { encoding: "utf8" }).stdout.split("\n");
+    expectEqual(listed.filter((it) => it.endsWith(".h5")).length, done, "recordings");
+    expectNoComplaints(page);
+  },
+
+  async IsAccessible({ browser, studio, screenshots }) {
+    for (const colorScheme of ["light", "dark"]) {
+      const page = await prepare({ browser, studio }, { colorScheme });
+      expectEqual(await audit(page), [], `complaints, ${colorScheme}, without a file`);
+      await choose(page, await source(studio, `${colorScheme}.csv`, press()));
+      await fits(page);
+      await page.screenshot({ path: join(screenshots, `import-${colorScheme}.png`) });
+      expectEqual(await audit(page), [], `complaints, ${colorScheme}, with a file`);
+      await importAll(page);
+      await page.waitForSelector(".imported .time_plot");
+      await page.waitForTimeout(1500); // what inspect flags comes after the lines
+      await page.screenshot({ path: join(screenshots, `imported-${colorScheme}.png`) });
+      expectEqual(await audit(page), [], `complaints, ${colorScheme}, imported`);
+      await page.context().close();
+    }
+  },
+};
