@@ -17,7 +17,7 @@ namespace kerf::bench {
 /// @param package of Debian that has the program, for the message where it is not installed
 /// @throws std::system_error where the program cannot be started; std::runtime_error, with the last line that
 ///         it said, if it fails or answers with another number of forces.
-[[nodiscard]] std::vector<double> forces_of_program(std::vector<std::string> words,
+[[nodiscard]] std::vector<double> forces_of_program(const std::vector<std::string>& words,
                                                     const std::filesystem::path& folder,
                                                     std::span<const HostSample> samples,
                                                     const std::string& package);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <stdexcept>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -34,7 +33,7 @@ BuiltDevice build_device(const fs::path& source, const fs::path& plugin, schema:
   for (const std::string& option :
        {fs::absolute(source).string(), std::string("-o"), built.path().string(), std::string("-lm")})
     words.push_back(option);
-  BuiltDevice made{.device = {}, .compiler = name, .said = compile(std::move(words), source, name)};
+  BuiltDevice made{.device = {}, .compiler = name, .said = compile(words, source, name)};
   try {
     made.device = drivers::look_at_plugin(built.path().string());
   } catch (const drivers::DeviceError& error) {

@@ -37,7 +37,7 @@ BuiltLaw build_law(const fs::path& header, const fs::path& plugin, schema::Exist
        {std::string("-include"), fs::absolute(header).string(), std::string("-x"), std::string("c++"),
         std::string("/dev/null"), std::string("-o"), built.path().string()})
     words.push_back(option);
-  std::string said = compile(std::move(words), header, name);
+  std::string said = compile(words, header, name);
   plugins::Trial trial;
   try {
     trial = plugins::try_law(built.path());

@@ -1,8 +1,6 @@
 #include "own_code/compiler.h"
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
 #include <cstdlib>
 #include <sstream>
 #include <stdexcept>
@@ -10,12 +8,12 @@
 #include <system_error>
 #include <utility>
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include <kerf/processes/program.h>
 
 namespace kerf::bench {
 namespace {
@@ -27,31 +25,16 @@ struct Compiled {
   std::string said;
 };
 
-Compiled run_compiler(std::vector<std::string> words) {
-  std::array<int, 2> ends{};
-  if (pipe2(ends.data(), O_CLOEXEC) != 0) throw std::system_error(errno, std::generic_category(), "a pipe");
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, ends[1], STDERR_FILENO);
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
+Compiled run_compiler(const std::vector<std::string>& words) {
+  const processes::Descriptor said = processes::file_in_memory();
   pid_t process = 0;
-  const int error = posix_spawnp(&process, arguments[0], &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  close(ends[1]);
-  Compiled result;
-  std::array<char, 4096> buffer{};
-  for (ssize_t count = 0; error == 0 && (count = read(ends[0], buffer.data(), buffer.size())) > 0;)
-    result.said.append(buffer.data(), static_cast<std::size_t>(count));
-  close(ends[0]);
+  const int error =
+      processes::start({.words = words, .output = said.number(), .errors = said.number()}, process);
   if (error != 0)
     throw std::system_error(error, std::generic_category(),
                             words[0] + ", a compiler (CC or CXX names another)");
-  while (waitpid(process, &result.status, 0) < 0 && errno == EINTR) {
-  }
-  return result;
+  const int status = processes::wait_for(process);
+  return {.status = status, .said = processes::content_of(said)};
 }
 
 /// The line of a compiler's words that says what is wrong.
@@ -91,8 +74,8 @@ std::vector<std::string> compiler_named(const char* variable, const char* usual)
   return all;
 }
 
-std::string compile(std::vector<std::string> words, const fs::path& source, const std::string& name) {
-  Compiled compiled = run_compiler(std::move(words));
+std::string compile(const std::vector<std::string>& words, const fs::path& source, const std::string& name) {
+  Compiled compiled = run_compiler(words);
   if (!WIFEXITED(compiled.status) || WEXITSTATUS(compiled.status) != 0) {
     throw std::invalid_argument(
         fmt::format("{}: {} does not compile it: {}", source.string(), name, first_error(compiled.said)));

@@ -29,7 +29,7 @@ class BuiltFile {
 
 /// Runs it. @param name of it, for messages. @returns what it said: warnings
 /// @throws std::invalid_argument with its first error; std::system_error without such a compiler
-[[nodiscard]] std::string compile(std::vector<std::string> words, const std::filesystem::path& source,
+[[nodiscard]] std::string compile(const std::vector<std::string>& words, const std::filesystem::path& source,
                                   const std::string& name);
 
 /// The folder with that header of Kerf's ("kerf/plugin.h"): `include` where Kerf is installed, or `of_tree`

@@ -9,7 +9,6 @@
 
 #include <fcntl.h>
 #include <fmt/core.h>
-#include <spawn.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -31,36 +30,15 @@ int milliseconds_until(Clock::time_point deadline) {
   return static_cast<int>(std::clamp<std::int64_t>(left.count(), 0, 60'000));
 }
 
-pid_t spawn(const ChildProgram::Start& start, int output, int errors) {
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  if (start.input < 0) {
-    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  } else {
-    posix_spawn_file_actions_adddup2(&actions, start.input, STDIN_FILENO);
-  }
-  posix_spawn_file_actions_adddup2(&actions, start.output < 0 ? output : start.output, STDOUT_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, errors, STDERR_FILENO);
-  if (!start.folder.empty()) posix_spawn_file_actions_addchdir_np(&actions, start.folder.c_str());
-  posix_spawn_file_actions_addclosefrom_np(&actions, STDERR_FILENO + 1);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  sigset_t standard;
-  sigemptyset(&standard);
-  posix_spawnattr_setsigmask(&attributes, &standard);
-  sigaddset(&standard, SIGPIPE);  // which this program ignores
-  posix_spawnattr_setsigdefault(&attributes, &standard);
-  posix_spawnattr_setpgroup(&attributes, 0);
-  posix_spawnattr_setflags(&attributes,
-                           POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
-  std::vector<std::string> words = start.command;
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
+pid_t spawn(const ChildProgram::Start& start, const Descriptor& output, const Descriptor& errors) {
   pid_t process = 0;
-  const int error = posix_spawnp(&process, arguments[0], &actions, &attributes, arguments.data(), environ);
-  posix_spawnattr_destroy(&attributes);
-  posix_spawn_file_actions_destroy(&actions);
+  const int error = processes::start({.words = start.command,
+                                      .folder = start.folder,
+                                      .input = start.input,
+                                      .output = start.output < 0 ? output.number() : start.output,
+                                      .errors = errors.number(),
+                                      .has_group = true},
+                                     process);
   if (error != 0) {
     throw std::invalid_argument(fmt::format("the renderer '{}' cannot be started: {}", start.command.front(),
                                             std::generic_category().message(error)));
@@ -70,16 +48,11 @@ pid_t spawn(const ChildProgram::Start& start, int output, int errors) {
 
 }  // namespace
 
-void Descriptor::reset(int number) noexcept {
-  if (number_ >= 0) close(number_);
-  number_ = number;
-}
-
 Pipe::Pipe() {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) throw std::system_error(errno, std::generic_category(), "a pipe");
-  reads.reset(ends[0]);
-  writes.reset(ends[1]);
+  reads = Descriptor(ends[0]);
+  writes = Descriptor(ends[1]);
 }
 
 SaidStream::SaidStream() {
@@ -103,7 +76,7 @@ void SaidStream::take_rest() {
 }
 
 ChildProgram::ChildProgram(const Start& start)
-    : process_(spawn(start, output.pipe().writes.number(), errors.pipe().writes.number())),
+    : process_(spawn(start, output.pipe().writes, errors.pipe().writes)),
       ended_(static_cast<int>(syscall(SYS_pidfd_open, process_, 0))) {
   const int error = errno;
   output.pipe().writes.reset();

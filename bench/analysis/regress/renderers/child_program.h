@@ -12,6 +12,8 @@
 #include <poll.h>
 #include <sys/types.h>
 
+#include <kerf/processes/program.h>
+
 namespace kerf::bench {
 
 /// What a renderer did wrong, in one line, and what it said besides.
@@ -26,19 +28,7 @@ class RendererError : public std::invalid_argument {
   std::string said_;
 };
 
-/// A descriptor that is closed at the end of its scope.
-class Descriptor {
- public:
-  explicit Descriptor(int number = -1) noexcept : number_(number) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() { reset(); }
-  [[nodiscard]] int number() const noexcept { return number_; }
-  void reset(int number = -1) noexcept;
-
- private:
-  int number_;
-};
+using processes::Descriptor;
 
 /// A pipe, of this process alone until an end is handed on. @throws std::system_error.
 struct Pipe {

@@ -146,7 +146,7 @@ class Conversation {
     const bool has_ended = program_->wait(connection, deadline_);
     if (connection[0].revents == 0)
       fail(has_ended ? LineLink::Outcome::ended : LineLink::Outcome::late, "connected to {socket}");
-    socket_.reset(accept4(listener.number(), nullptr, nullptr, SOCK_CLOEXEC));
+    socket_ = Descriptor(accept4(listener.number(), nullptr, nullptr, SOCK_CLOEXEC));
     if (socket_.number() < 0)
       throw std::system_error(errno, std::generic_category(), "a renderer's connection");
   }

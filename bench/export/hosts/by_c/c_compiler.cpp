@@ -43,7 +43,7 @@ void compile_c(const std::filesystem::path& source, const std::filesystem::path&
   words.insert(words.end(), options.begin(), options.end());
   words.insert(words.end(), {"-o", output.string(), source.string()});
   words.insert(words.end(), libraries.begin(), libraries.end());
-  static_cast<void>(compile(std::move(words), source, name));
+  static_cast<void>(compile(words, source, name));
 }
 
 std::string axis_in_words(const LawFile& file) {

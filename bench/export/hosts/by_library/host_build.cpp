@@ -2,7 +2,6 @@
 
 #include <stdexcept>
 #include <system_error>
-#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -46,7 +45,7 @@ fs::path build_driver(const ScratchFolder& build, const fs::path& folder,
   for (const std::string& word : {source.string(), std::string("-o"), program.string(), library.string(),
                                   fmt::format("-Wl,-rpath,{}", library.parent_path().string())})
     words.push_back(word);
-  (void)compile(std::move(words), source, name);
+  (void)compile(words, source, name);
   return program;
 }
 

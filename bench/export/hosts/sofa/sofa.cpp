@@ -24,7 +24,7 @@ std::vector<double> sofa_forces(const ExportedLaw& law, const std::filesystem::p
   build.write("driver.cpp", filled_in(host_text("sofa_driver.cpp.in"), law_values(law, Language::cpp)));
   std::vector<std::string> words{build_driver(build, folder, {"-std=c++17", "-O1"}).string()};
   for (std::string& argument : plugin_argument(law)) words.push_back(std::move(argument));
-  return forces_of_program(std::move(words), build.path(), samples, "g++");
+  return forces_of_program(words, build.path(), samples, "g++");
 }
 
 }  // namespace

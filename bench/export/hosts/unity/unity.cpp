@@ -34,7 +34,7 @@ std::vector<double> unity_forces(const ExportedLaw& law, const std::filesystem::
   (void)forces_of_program({"mcs", "-out:driver.exe", source, "driver.cs"}, build.path(), {}, "mono-mcs");
   std::vector<std::string> words{"mono", "driver.exe", fmt::format("{}", samples.size())};
   for (std::string& argument : plugin_argument(law)) words.push_back(std::move(argument));
-  return forces_of_program(std::move(words), build.path(), samples, "mono-runtime");
+  return forces_of_program(words, build.path(), samples, "mono-runtime");
 }
 
 }  // namespace
