@@ -6,6 +6,24 @@
 
 namespace kerf::bench {
 
+std::vector<SweepInput> recording_inputs(const std::string& what_for) {
+  using enum SweepInput::Kind;
+  return {{.name = "recording", .kind = recording, .what = "Recording " + what_for, .required = true},
+          {.name = "axis",
+           .kind = text,
+           .what = "Axis; where none is named that of the cycles, or the first",
+           .standard = ""},
+          {.name = "rows",
+           .kind = text,
+           .what = "Rows that count",
+           .among = {"contact", "all"},
+           .standard = "contact"},
+          {.name = "cycles",
+           .kind = text,
+           .what = "Cycles that count: good, all, or 2-8,10",
+           .standard = "good"}};
+}
+
 std::vector<SweepInput> noise_inputs() {
   return {{.name = "noise",
            .what = "Standard deviation of white noise that is added to the force",

@@ -10,6 +10,9 @@
 
 namespace kerf::bench {
 
+/// `recording`, with what it is for ("to fit"), and what of it counts: `axis`, `rows`, `cycles`.
+[[nodiscard]] std::vector<SweepInput> recording_inputs(const std::string& what_for);
+
 /// `noise` and `seed`: white noise that is added to the force that counts.
 [[nodiscard]] std::vector<SweepInput> noise_inputs();
 
