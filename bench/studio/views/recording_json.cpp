@@ -57,11 +57,11 @@ ordered_json events_of(const schema::Recording& about) {
   return events;
 }
 
-ordered_json gaps_of(const RecordingView& recording) {
+/// Null while nobody knows.
+ordered_json gaps_of(const RowIndex* rows) {
+  if (rows == nullptr) return nullptr;
   ordered_json gaps = ordered_json::array();
-  for (const auto& [from_s, to_s] : recording.rows().gaps()) {
-    gaps.push_back({json_number(from_s), json_number(to_s)});
-  }
+  for (const auto& [from_s, to_s] : rows->gaps()) gaps.push_back({json_number(from_s), json_number(to_s)});
   return gaps;
 }
 
@@ -123,6 +123,7 @@ std::string recording_json(const RecordingView& recording, const std::string& id
   const schema::RecordingFile& file = recording.file();
   const schema::Recording& about = file.about();
   const schema::Header& header = about.header;
+  const RowIndex* const rows = recording.rows();
   return dumped({{"id", id},
                  {"rows", file.rows()},
                  {"seconds", json_number(file.rows() > 0 ? file.last_time_s() - file.first_time_s() : 0.0)},
@@ -138,8 +139,9 @@ std::string recording_json(const RecordingView& recording, const std::string& id
                  {"traces", traces_of(recording)},
                  {"events", events_of(about)},
                  {"events_in_all", about.events.size()},
-                 {"gaps", gaps_of(recording)},
-                 {"gaps_in_all", recording.rows().gaps_in_all()},
+                 {"gaps", gaps_of(rows)},
+                 {"gaps_in_all", rows == nullptr ? ordered_json(nullptr) : ordered_json(rows->gaps_in_all())},
+                 {"prepared", recording.prepared()},
                  {"cycles", cycles_of(recording)}});
 }
 

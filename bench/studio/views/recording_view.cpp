@@ -1,8 +1,10 @@
 #include "views/recording_view.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -24,9 +26,10 @@ std::span<const Number> numbers_in(const ViewCache::Part& part) {
   return {reinterpret_cast<const Number*>(part.bytes.data()), part.bytes.size() / sizeof(Number)};
 }
 
-schema::RecordingFile::Texts trust_in(const std::optional<ViewCache::Part>& kept) {
+schema::RecordingFile::Texts trust_in(const std::optional<ViewCache::Part>& kept, bool is_waited_for) {
   using Texts = schema::RecordingFile::Texts;
-  return kept ? Texts::known_to_be_sound : Texts::looked_through;
+  if (kept) return Texts::known_to_be_sound;
+  return is_waited_for ? Texts::looked_through : Texts::looked_through_later;
 }
 
 /// Columns of whole buckets, as equal as they can be.
@@ -50,17 +53,32 @@ void append(const TraceView::Extremes& more, TraceView::Extremes& to) {
 
 }  // namespace
 
-RecordingView::RecordingView(const std::filesystem::path& file, const ViewCache& cache)
-    : facts_(FileFacts::of(file)),
+RecordingView::RecordingView(const std::filesystem::path& file, const ViewCache& cache,
+                             const WaitedFor& at_most)
+    : path_(file),
+      facts_(FileFacts::of(file)),
       cache_(cache),
       kept_rows_(cache.find(facts_, index_name)),
-      file_(file, trust_in(kept_rows_)),
-      sources_(row_sources(file_)) {
+      texts_(trust_in(kept_rows_, facts_.size <= at_most.bytes)),
+      file_(file, texts_),
+      sources_(row_sources(file_)),
+      is_waited_for_(file_.rows() <= at_most.rows) {
   // What is still written is another file the next time.
   if (file_.is_live()) cache_ = ViewCache({});
   list_traces();
   pyramids_.resize(sources_.size());
-  index_rows();
+  rows_ = kept_index();
+  if (!is_waited_for_) {
+    prepare_beside();
+  } else if (!rows_) {
+    rows_ = RowIndex::of(file_);
+    keep_index();
+  }
+}
+
+const RowIndex* RecordingView::rows() const {
+  const std::lock_guard lock(mutex_);
+  return rows_ ? &*rows_ : nullptr;
 }
 
 void RecordingView::list_traces() {
@@ -96,19 +114,54 @@ void RecordingView::add_axis_traces(std::size_t axis) {
   }
 }
 
-void RecordingView::index_rows() {
-  const std::string& uuid = file_.about().header.uuid;
-  if (kept_rows_ && kept_rows_->uuid == uuid && kept_rows_->rows == file_.rows()) {
-    try {
-      rows_.emplace(file_.rows(), numbers_in<double>(*kept_rows_), kept_rows_->owner);
-      return;
-    } catch (const std::invalid_argument&) {
-      // It is made anew.
+std::optional<RowIndex> RecordingView::kept_index() const {
+  if (!kept_rows_ || kept_rows_->uuid != file_.about().header.uuid || kept_rows_->rows != file_.rows())
+    return std::nullopt;
+  try {
+    return RowIndex(file_.rows(), numbers_in<double>(*kept_rows_), kept_rows_->owner);
+  } catch (const std::invalid_argument&) {
+    return std::nullopt;  // it is made anew
+  }
+}
+
+/// Which says that its texts are sound, too. @throws FormatError if they are not.
+void RecordingView::keep_index() const {
+  using Texts = schema::RecordingFile::Texts;
+  if (texts_ == Texts::looked_through_later) (void)schema::RecordingFile(path_, Texts::looked_through);
+  cache_.keep(facts_, index_name,
+              {.uuid = file_.about().header.uuid,
+               .rows = file_.rows(),
+               .bytes = std::as_bytes(rows_->numbers()),
+               .owner = {}});
+}
+
+void RecordingView::prepare_beside() {
+  std::uint64_t passes = rows_ ? 0 : 1;
+  for (std::size_t at = 0; at < sources_.size(); ++at) {
+    if (auto kept = kept_pyramids(sources_[at])) {
+      take_pyramids(at, std::move(*kept));
+    } else {
+      ++passes;
     }
   }
-  rows_.emplace(RowIndex::of(file_));
-  cache_.keep(facts_, index_name,
-              {.uuid = uuid, .rows = file_.rows(), .bytes = std::as_bytes(rows_->numbers()), .owner = {}});
+  if (passes > 0) preparation_.start(passes * file_.rows(), [this](const auto& go_on) { prepare(go_on); });
+}
+
+/// On its own thread: nobody else adds to what it looks at without the lock.
+void RecordingView::prepare(const RowPreparation::GoOn& go_on) {
+  const bool is_new = !rows_;
+  if (is_new) {
+    RowIndex built = RowIndex::of(file_, go_on);
+    const std::lock_guard lock(mutex_);
+    rows_ = std::move(built);
+  }
+  for (std::size_t at = 0; at < sources_.size(); ++at) {
+    if (pyramids_[at]) continue;
+    Pyramids built = built_pyramids(sources_[at], go_on);
+    const std::lock_guard lock(mutex_);
+    take_pyramids(at, std::move(built));
+  }
+  if (is_new) keep_index();  // when the file has been read, which to look through it takes as long as
 }
 
 std::optional<Pyramids> RecordingView::kept_pyramids(const RowSource& source) const {
@@ -121,7 +174,8 @@ std::optional<Pyramids> RecordingView::kept_pyramids(const RowSource& source) co
   }
 }
 
-Pyramids RecordingView::built_pyramids(const RowSource& source) const {
+/// Also keeps them.
+Pyramids RecordingView::built_pyramids(const RowSource& source, const RowPreparation::GoOn& go_on) const {
   PyramidBuilder builder(file_.rows(), source.width);
   std::vector<double> block;
   for (std::uint64_t first = 0; first < file_.rows(); first += PyramidBuilder::rows_at_once) {
@@ -129,27 +183,57 @@ Pyramids RecordingView::built_pyramids(const RowSource& source) const {
     block.resize(static_cast<std::size_t>(rows) * source.width);
     source.read(first, block);
     builder.add(block);
+    if (go_on) go_on(rows);
   }
-  return std::move(builder).finish();
+  Pyramids built = std::move(builder).finish();
+  cache_.keep(facts_, source.name,
+              {.uuid = file_.about().header.uuid,
+               .rows = file_.rows(),
+               .bytes = std::as_bytes(built.numbers()),
+               .owner = {}});
+  // Of a kept one only what is looked at has to be in memory.
+  auto kept = kept_pyramids(source);
+  return kept ? std::move(*kept) : std::move(built);
+}
+
+void RecordingView::take_pyramids(std::size_t at, Pyramids pyramids) {
+  bytes_ += pyramids.numbers().size_bytes();
+  pyramids_[at] = std::move(pyramids);
 }
 
 const Pyramids& RecordingView::pyramids_of(std::size_t at) {
   auto& pyramids = pyramids_[at];
-  if (pyramids) return *pyramids;
-  const RowSource& source = sources_[at];
-  pyramids = kept_pyramids(source);
   if (!pyramids) {
-    pyramids = built_pyramids(source);
-    cache_.keep(facts_, source.name,
-                {.uuid = file_.about().header.uuid,
-                 .rows = file_.rows(),
-                 .bytes = std::as_bytes(pyramids->numbers()),
-                 .owner = {}});
-    // Of a kept one only what is looked at has to be in memory.
-    if (auto kept = kept_pyramids(source)) pyramids = std::move(kept);
+    auto kept = kept_pyramids(sources_[at]);
+    take_pyramids(at, kept ? std::move(*kept) : built_pyramids(sources_[at], {}));
   }
-  bytes_ += pyramids->numbers().size_bytes();
   return *pyramids;
+}
+
+bool RecordingView::are_prepared(std::span<const std::size_t> traces) const {
+  return rows_ && std::ranges::all_of(traces, [&](std::size_t trace) {
+           return is_waited_for_ || pyramids_[places_[trace].source];
+         });
+}
+
+/// The first row at that time or later. Without an index, of times that do not go back.
+std::uint64_t RecordingView::row_at(double time_s) const {
+  const auto read_times = [this](std::uint64_t first, std::span<double> times_s) {
+    file_.read(Column::time, first, times_s.size(), times_s);
+  };
+  if (rows_) return rows_->row_at(time_s, read_times);
+  std::uint64_t first = 0;
+  for (std::uint64_t end = file_.rows(); first < end;) {
+    const std::uint64_t middle = first + (end - first) / 2;
+    double at_s = 0.0;
+    read_times(middle, {&at_s, 1});
+    if (at_s < time_s) {
+      first = middle + 1;
+    } else {
+      end = middle;
+    }
+  }
+  return first;
 }
 
 const std::string& RecordingView::inspection() {
@@ -173,20 +257,25 @@ TraceView RecordingView::view(std::span<const std::size_t> traces, double from_s
           fmt::format("there are {} traces, there is no trace {}", traces_.size(), trace));
     }
   }
-  const auto read_times = [this](std::uint64_t first, std::span<double> time_s) {
-    file_.read(Column::time, first, time_s.size(), time_s);
-  };
   TraceView nothing;
   nothing.traces.resize(traces.size());
   if (file_.rows() == 0 || columns == 0 || !(from_s <= to_s)) return nothing;
   if (to_s < file_.first_time_s()) return nothing;
-  std::uint64_t first = rows_->row_at(from_s, read_times);
-  if (first == file_.rows()) return nothing;
-  const std::uint64_t end = std::min(rows_->row_at(to_s, read_times) + 1, file_.rows());
-  if (first > 0) --first;
+  const RowPreparation::Request request(preparation_);
+  preparation_.rethrow_failure();
   const std::lock_guard lock(mutex_);
-  return end - first >= near_rows * columns ? view_from_afar(traces, first, end, columns)
-                                            : view_from_near(traces, first, end, columns);
+  const double prepared = preparation_.done();  // before what it is said of
+  std::uint64_t first = row_at(from_s);
+  if (first == file_.rows()) return nothing;
+  const std::uint64_t end = std::min(row_at(to_s) + 1, file_.rows());
+  if (first > 0) --first;
+  const bool is_near = end - first < near_rows * columns;
+  const bool is_exact = is_near ? rows_.has_value() : are_prepared(traces);
+  TraceView view = is_near    ? view_from_near(traces, first, end, columns)
+                   : is_exact ? view_from_afar(traces, first, end, columns)
+                              : view_of_some_rows(traces, first, end, columns);
+  view.prepared = is_exact ? 1.0 : prepared;
+  return view;
 }
 
 TraceView RecordingView::view_from_afar(std::span<const std::size_t> traces, std::uint64_t first,
@@ -235,6 +324,36 @@ TraceView RecordingView::view_from_near(std::span<const std::size_t> traces, std
         in_rows = place.source;
       }
       append(extremes_of_rows(rows, source.width, place.column, some.front(), some), view.traces[i]);
+    }
+  }
+  return view;
+}
+
+TraceView RecordingView::view_of_some_rows(std::span<const std::size_t> traces, std::uint64_t first,
+                                           std::uint64_t end, std::size_t columns) const {
+  const auto boundaries = wide_boundaries(first, end, columns, file_.rows());
+  TraceView view;
+  view.rows_per_column = rows_per_column(boundaries);
+  view.rows_looked_at = bucket;
+  view.traces.resize(traces.size());
+  std::vector<std::vector<double>> rows(sources_.size());  // of the column that is being looked at
+  for (std::size_t i = 0; i + 1 < boundaries.size(); ++i) {
+    // The first of a column, so that its time is theirs.
+    const std::array some{boundaries[i], std::min(boundaries[i] + bucket, boundaries[i + 1])};
+    const auto count = static_cast<std::size_t>(some[1] - some[0]);
+    double time_s = 0.0;
+    file_.read(Column::time, some[0], 1, {&time_s, 1});
+    view.time_s.push_back(time_s);
+    for (auto& of_source : rows) of_source.clear();
+    for (std::size_t k = 0; k < traces.size(); ++k) {
+      const Place& place = places_[traces[k]];
+      const RowSource& source = sources_[place.source];
+      auto& values = rows[place.source];
+      if (values.empty()) {
+        values.resize(count * source.width);
+        source.read(some[0], values);
+      }
+      append(extremes_of_rows(values, source.width, place.column, some[0], some), view.traces[k]);
     }
   }
   return view;

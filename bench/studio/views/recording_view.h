@@ -17,6 +17,7 @@
 #include "views/hysteresis_loops.h"
 #include "views/pyramid.h"
 #include "views/row_index.h"
+#include "views/row_preparation.h"
 #include "views/trace_view.h"
 #include "views/view_cache.h"
 
@@ -37,17 +38,32 @@ struct RowSource {
 /// made the first time that a trace of their dataset is asked for; from near, from the rows themselves.
 ///
 /// Two lengths of time bound the work: an hour of 6 axes at 1 kHz (3.6 million rows) is opened and seen as a
-/// whole in less than a second; any stretch of it in a few milliseconds. May be used by several threads,
-/// which wait for one another.
+/// whole in less than a second; any stretch of it in a few milliseconds. The rows of a longer one are gone
+/// through beside that, and until then a stretch seen from afar is of some rows of each column, and says so.
+/// May be used by several threads, which wait for one another.
 class RecordingView {
  public:
+  /// What is waited for when a recording is opened: of more rows nobody waits until all have been gone
+  /// through, of a larger file until its texts have been looked through.
+  struct WaitedFor {
+    std::uint64_t rows = 8'000'000;
+    std::uint64_t bytes = std::uint64_t{1} << 30U;
+  };
+
   /// @throws as schema::RecordingFile.
-  RecordingView(const std::filesystem::path& file, const ViewCache& cache);
+  RecordingView(const std::filesystem::path& file, const ViewCache& cache, const WaitedFor& at_most);
+  RecordingView(const std::filesystem::path& file, const ViewCache& cache)
+      : RecordingView(file, cache, WaitedFor{}) {}
 
   [[nodiscard]] const schema::RecordingFile& file() const noexcept { return file_; }
   /// What the file was when it was opened.
   [[nodiscard]] const FileFacts& facts() const noexcept { return facts_; }
-  [[nodiscard]] const RowIndex& rows() const noexcept { return *rows_; }
+  /// Null while its rows are being gone through.
+  [[nodiscard]] const RowIndex* rows() const;
+  /// How much of that is done; 1: all.
+  [[nodiscard]] double prepared() const noexcept { return preparation_.done(); }
+  /// As long as what is returned lives, no more of it is done.
+  [[nodiscard]] RowPreparation::Request pause() { return RowPreparation::Request(preparation_); }
 
   /// Of each axis position, velocity and forces ("position theta"), then the times of the stages of a tick
   /// and their sum without the wait (cycle_time), then the channels by their names.
@@ -77,28 +93,40 @@ class RecordingView {
 
   void list_traces();
   void add_axis_traces(std::size_t axis);
-  void index_rows();
+  [[nodiscard]] std::optional<RowIndex> kept_index() const;
+  void keep_index() const;
+  void prepare_beside();
+  void prepare(const RowPreparation::GoOn& go_on);
   [[nodiscard]] std::optional<Pyramids> kept_pyramids(const RowSource& source) const;
-  [[nodiscard]] Pyramids built_pyramids(const RowSource& source) const;
+  [[nodiscard]] Pyramids built_pyramids(const RowSource& source, const RowPreparation::GoOn& go_on) const;
+  void take_pyramids(std::size_t source, Pyramids pyramids);
   const Pyramids& pyramids_of(std::size_t source);
+  [[nodiscard]] bool are_prepared(std::span<const std::size_t> traces) const;
+  [[nodiscard]] std::uint64_t row_at(double time_s) const;
   TraceView view_from_afar(std::span<const std::size_t> traces, std::uint64_t first, std::uint64_t end,
                            std::size_t columns);
   [[nodiscard]] TraceView view_from_near(std::span<const std::size_t> traces, std::uint64_t first,
                                          std::uint64_t end, std::size_t columns) const;
+  [[nodiscard]] TraceView view_of_some_rows(std::span<const std::size_t> traces, std::uint64_t first,
+                                            std::uint64_t end, std::size_t columns) const;
 
+  std::filesystem::path path_;
   FileFacts facts_;
   ViewCache cache_;
   std::optional<ViewCache::Part> kept_rows_;  ///< tells that the file was sound when it was opened before
+  schema::RecordingFile::Texts texts_;
   schema::RecordingFile file_;
   std::vector<RowSource> sources_;
   std::vector<Trace> traces_;
   std::vector<Place> places_;  ///< of each trace
+  bool is_waited_for_;         ///< its rows are gone through when they are asked for
+  mutable std::mutex mutex_;   ///< of all below
   std::optional<RowIndex> rows_;
-  std::mutex mutex_;  ///< of all below
   std::map<std::size_t, AxisCycles> cycles_;
   std::string inspection_;                         ///< empty: nobody has asked
   std::vector<std::optional<Pyramids>> pyramids_;  ///< of each source
   std::atomic<std::size_t> bytes_ = 0;
+  RowPreparation preparation_;  ///< ends before what it works on
 };
 
 }  // namespace kerf::bench

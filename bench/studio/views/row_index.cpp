@@ -72,7 +72,8 @@ class GapFinder {
 
 }  // namespace
 
-RowIndex RowIndex::of(const schema::RecordingFile& file) {
+RowIndex RowIndex::of(const schema::RecordingFile& file,
+                      const std::function<void(std::uint64_t rows)>& go_on) {
   const std::size_t buckets = buckets_of(file.rows());
   const auto numbers = std::make_shared<std::vector<double>>(2 * buckets);
   double latest = -std::numeric_limits<double>::infinity();
@@ -83,6 +84,7 @@ RowIndex RowIndex::of(const schema::RecordingFile& file) {
     rows.read(file, first,
               static_cast<std::size_t>(std::min<std::uint64_t>(rows_at_once, file.rows() - first)));
     gaps.add(rows);
+    if (go_on) go_on(rows.time_s.size());
     for (std::size_t i = 0; i < rows.time_s.size(); ++i) {
       const auto at = static_cast<std::size_t>(first + i) / bucket;
       if (i % bucket == 0) (*numbers)[at] = rows.time_s[i];

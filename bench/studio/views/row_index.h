@@ -21,8 +21,10 @@ class RowIndex {
   /// Gives the times of the rows from `first_row` on, as many as there is room for.
   using ReadTimes = std::function<void(std::uint64_t first_row, std::span<double> time_s)>;
 
-  /// Reads times, ticks and flags once.
-  [[nodiscard]] static RowIndex of(const schema::RecordingFile& file);
+  /// Reads times, ticks and flags once. @param go_on is told after every so many rows
+  /// @throws whatever `go_on` does.
+  [[nodiscard]] static RowIndex of(const schema::RecordingFile& file,
+                                   const std::function<void(std::uint64_t rows)>& go_on = {});
   /// Of numbers() as they were built; `owner` keeps them. @throws std::invalid_argument if they do not fit.
   RowIndex(std::uint64_t rows, std::span<const double> numbers, std::shared_ptr<const void> owner);
 

@@ -1,5 +1,6 @@
 #include "views/trace_view.h"
 
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <span>
@@ -20,9 +21,9 @@ std::string bytes_of(const TraceView& view) {
   const std::uint32_t sizes[]{static_cast<std::uint32_t>(view.time_s.size()),
                               static_cast<std::uint32_t>(view.traces.size())};
   std::string bytes;
-  bytes.reserve(16 + view.time_s.size() * (8 + 8 * view.traces.size()));
+  bytes.reserve(32 + view.time_s.size() * (8 + 8 * view.traces.size()));
   append<std::uint32_t>(bytes, sizes);
-  append<double>(bytes, {&view.rows_per_column, 1});
+  append<double>(bytes, std::array{view.rows_per_column, view.rows_looked_at, view.prepared});
   append<double>(bytes, view.time_s);
   for (const TraceView::Extremes& it : view.traces) {
     append<float>(bytes, it.smallest);

@@ -68,7 +68,8 @@ ReaderProcess::ReaderProcess(const std::filesystem::path& file, std::string_view
   if (::fstat(descriptor.number(), &status) != 0) refuse_start(file, reader, errno);
   const auto file_bytes = static_cast<std::uintmax_t>(status.st_size);
   max_bytes_ = h5::max_deflated * file_bytes;
-  timeout_ms_ = patience_ms(file_bytes);
+  usual_timeout_ms_ = patience_ms(file_bytes);
+  set_timeout(std::nullopt);
   const auto window = new_window();
   auto [ours, theirs] = processes::connection(SOCK_SEQPACKET);
   if (window.number() < 0 || ours.number() < 0) refuse_start(file, reader, errno);

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -38,6 +39,10 @@ class ReaderProcess {
     return value;
   }
 
+  /// How long to wait for a piece of an answer [ms]; nullopt: as long as the slowest disk takes to give the
+  /// whole file, and a minute.
+  void set_timeout(std::optional<int> ms) noexcept { timeout_ms_ = ms.value_or(usual_timeout_ms_); }
+
   // An answer of several parts: begin(), as many get() as it has, end().
   void begin(const Request& request);
   /// The next so many bytes.
@@ -65,6 +70,7 @@ class ReaderProcess {
 
   std::filesystem::path file_;
   std::uintmax_t max_bytes_ = 0;
+  int usual_timeout_ms_ = 0;
   int timeout_ms_ = 0;
   pid_t process_ = 0;
   processes::Descriptor socket_;

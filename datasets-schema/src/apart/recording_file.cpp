@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -19,10 +20,13 @@ constexpr bool is_of_floats(Column column) { return column >= Column::wake_laten
 struct RecordingFile::Implementation {
   Implementation(const std::filesystem::path& file, Texts texts) : path(file), reader(file, "a recording") {
     using apart::Ask;
+    constexpr int texts_patience_ms = 20'000;
+    if (texts == Texts::looked_through_later) reader.set_timeout(texts_patience_ms);
     reader.begin(
         {.what = texts == Texts::looked_through ? Ask::recording : Ask::recording_with_trusted_texts});
     facts = reader.get_facts();
     reader.end();
+    reader.set_timeout(std::nullopt);
   }
 
   template <typename T>

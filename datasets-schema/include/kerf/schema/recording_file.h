@@ -21,8 +21,10 @@ class RecordingFile final : public RecordedRows {
  public:
   /// Whether the file's texts are looked through for damage on which HDF5 would fall over, which takes as
   /// long as reading the file once. Known to be sound are those of a file that was opened before and has not
-  /// changed since, or that this program has just written.
-  enum class Texts : std::uint8_t { looked_through, known_to_be_sound };
+  /// changed since, or that this program has just written. Those that are looked through later are read as
+  /// they are, by a reader that is given 20 s for it: whoever asks for that opens the file once more, to have
+  /// them looked through, before it trusts them.
+  enum class Texts : std::uint8_t { looked_through, known_to_be_sound, looked_through_later };
 
   /// @throws FormatError, std::invalid_argument, std::system_error, all as read_recording().
   explicit RecordingFile(const std::filesystem::path& file, Texts texts = Texts::looked_through);

@@ -164,7 +164,7 @@ TEST(RecordingRoutes, GiveAStretchAsBytes) {
       served.get("/api/recording/view",
                  {{"id", "a"}, {"traces", "0,11"}, {"from", "0.6"}, {"to", "0.7"}, {"columns", "30"}});
   ASSERT_EQ(response.status, 200) << response.body;
-  ASSERT_EQ(response.body.size(), 16U + 30U * 8U + 2U * 2U * 30U * 4U);
+  ASSERT_EQ(response.body.size(), 32U + 30U * 8U + 2U * 2U * 30U * 4U);
   std::uint32_t columns = 0;
   std::memcpy(&columns, response.body.data(), sizeof columns);
   EXPECT_EQ(columns, 30U);

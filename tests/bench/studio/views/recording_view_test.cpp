@@ -196,9 +196,9 @@ TEST(RecordingView, TellsOfGapsAsSpansOfTime) {
   rows.flags[0] = schema::flag_missed_deadline;
   schema::write_recording(folder / "r.h5", rows);
   const RecordingView recording(folder / "r.h5", ViewCache({}));
-  EXPECT_THAT(recording.rows().gaps(), ElementsAre(std::pair(rows.time[99], rows.time[101]),
-                                                   std::pair(rows.time[4999], rows.time[5000])));
-  EXPECT_EQ(recording.rows().gaps_in_all(), 2U);
+  EXPECT_THAT(recording.rows()->gaps(), ElementsAre(std::pair(rows.time[99], rows.time[101]),
+                                                    std::pair(rows.time[4999], rows.time[5000])));
+  EXPECT_EQ(recording.rows()->gaps_in_all(), 2U);
 }
 
 TEST(RecordingView, TellsOfSoManyGapsAndCountsTheRest) {
@@ -207,11 +207,11 @@ TEST(RecordingView, TellsOfSoManyGapsAndCountsTheRest) {
   for (std::size_t i = 0; i < rows.rows(); i += 2) rows.flags[i] = schema::flag_rows_lost;
   schema::write_recording(folder / "r.h5", rows);
   const RecordingView recording(folder / "r.h5", ViewCache(folder / "cache"));
-  EXPECT_EQ(recording.rows().gaps().size(), RowIndex::max_gaps);
-  EXPECT_EQ(recording.rows().gaps_in_all(), 4999U);
-  EXPECT_EQ(recording.rows().gaps().back().second, rows.time[4000]);
+  EXPECT_EQ(recording.rows()->gaps().size(), RowIndex::max_gaps);
+  EXPECT_EQ(recording.rows()->gaps_in_all(), 4999U);
+  EXPECT_EQ(recording.rows()->gaps().back().second, rows.time[4000]);
   const RecordingView again(folder / "r.h5", ViewCache(folder / "cache"));
-  EXPECT_EQ(again.rows().gaps_in_all(), 4999U);
+  EXPECT_EQ(again.rows()->gaps_in_all(), 4999U);
 }
 
 std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder) {

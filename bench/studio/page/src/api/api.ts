@@ -153,14 +153,14 @@ function errorIn(text: string): string | null {
 
 export function traceView(bytes: ArrayBuffer): TraceView {
   const [columns = 0, count = 0] = new Uint32Array(bytes, 0, 2);
-  const rowsPerColumn = new Float64Array(bytes, 8, 1)[0] ?? 1;
-  const time = new Float64Array(bytes, 16, columns);
+  const [rowsPerColumn = 1, rowsLookedAt = 0, prepared = 1] = new Float64Array(bytes, 8, 3);
+  const time = new Float64Array(bytes, 32, columns);
   const traces = [];
-  for (let trace = 0, at = 16 + 8 * columns; trace < count; ++trace, at += 8 * columns) {
+  for (let trace = 0, at = 32 + 8 * columns; trace < count; ++trace, at += 8 * columns) {
     traces.push({
       smallest: new Float32Array(bytes, at, columns),
       largest: new Float32Array(bytes, at + 4 * columns, columns),
     });
   }
-  return { rowsPerColumn, time, traces };
+  return { rowsPerColumn, rowsLookedAt, prepared, time, traces };
 }

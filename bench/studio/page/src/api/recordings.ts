@@ -41,8 +41,9 @@ export interface Recording {
   traces: Trace[];
   events: KerfEvent[];
   events_in_all: number;
-  gaps: [number, number][];
-  gaps_in_all: number;
+  gaps: [number, number][] | null; // null: its rows are still being gone through
+  gaps_in_all: number | null;
+  prepared: number; // how much of that is done; 1: all
   cycles: {
     axis: number;
     closing_direction: number;
@@ -67,6 +68,8 @@ export interface Loops {
 /** Columns of smallest and largest values; bytes_of() in the server's trace_view.h. */
 export interface TraceView {
   rowsPerColumn: number;
+  rowsLookedAt: number; // of each column, where these are the extremes of some rows; 0: of all
+  prepared: number; // below 1 it is worth asking again
   time: Float64Array;
   traces: { smallest: Float32Array; largest: Float32Array }[];
 }

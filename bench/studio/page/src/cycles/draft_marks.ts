@@ -32,5 +32,5 @@ export function draftMarks(about: Recording, view: CycleView, draft: Draft, held
       texts: [`Cycle ${number}: ${reasons}`, `${number}: ${it ? kindsOf(it) : ""}`, String(number)],
     };
   });
-  return { spans, gaps: about.gaps, events: about.events, cycles, clipped: [] };
+  return { spans, gaps: about.gaps ?? [], events: about.events, cycles, clipped: [] };
 }

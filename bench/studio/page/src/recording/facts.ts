@@ -11,7 +11,7 @@ export function factsInShort(recording: Recording): string {
     length(recording.seconds),
     `${recording.rows.toLocaleString("en-GB")} rows`,
     recording.status === "complete" ? "" : recording.status,
-    gaps > 0 ? `${gaps.toLocaleString("en-GB")} gaps` : "",
+    gaps ? `${gaps.toLocaleString("en-GB")} gaps` : "",
   ]
     .filter(Boolean)
     .join(" · ");
@@ -30,7 +30,7 @@ export function factsOf(recording: Recording): HTMLElement {
     fact("Rows", `${recording.rows.toLocaleString("en-GB")}, usually every ${withUnit(recording.period_s, "s")}`),
     fact("Status", recording.status),
     fact(recording.source ? "Imported" : "Recorded", date(recording.created)), // the file has no other time
-    fact("Gaps", gaps > 0 ? gaps.toLocaleString("en-GB") : "none"),
+    fact("Gaps", gaps === null ? "not yet known" : gaps > 0 ? gaps.toLocaleString("en-GB") : "none"),
     fact("By", recording.software),
     fact("From", recording.source),
     fact("History", recording.history),

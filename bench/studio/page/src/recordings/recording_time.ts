@@ -1,5 +1,5 @@
 import type { Api } from "../api/api";
-import type { CycleSpan, Recording, RecordingInspection, Trace } from "../api/recordings";
+import type { CycleSpan, Recording, RecordingInspection, Trace, TraceView } from "../api/recordings";
 import { element } from "../ui/dom";
 import { looks } from "../ui/palette";
 import { StretchLoader } from "../ui/time/stretch_loader";
@@ -32,6 +32,7 @@ export class RecordingTime {
   private first: Recording | null = null;
   private beginning = false; // what is shown at first is nobody's choice, and no state of the address
   private found: RecordingInspection | null = null;
+  private readonly sampled = element("span", { class: "sampled", role: "status" });
 
   constructor(
     private readonly api: Api,
@@ -40,7 +41,10 @@ export class RecordingTime {
     tools: HTMLElement,
     /** The stretch that is shown has changed; whether it is the whole. */
     private readonly moved: (from_s: number, to_s: number, whole: boolean) => void = () => {},
+    /** All rows of the first have been gone through, which they had not when it was told of. */
+    private readonly prepared: () => void = () => {},
   ) {
+    tools.append(this.sampled);
     this.stack = new TimeStack({
       name: "The recording over time",
       file: () => `${this.sources.map((it) => it.drawn.name.replace(/\.h5$/, "")).join(" ")} over time`,
@@ -104,11 +108,25 @@ export class RecordingTime {
         indices.forEach((index, k) => {
           if (index >= 0) takeView(lines[k] as TimeLine, view, asked.indexOf(index), recording.period_s);
         });
+        if (look === 0) this.tellOfRows(recording, view);
         this.stack.draw();
       },
       this.complain,
     );
     return { drawn, traces: asked, lines, loader };
+  }
+
+  /** Which rows the picture is made of, as long as these are not all. */
+  private tellOfRows(recording: Recording, view: TraceView): void {
+    const count = (rows: number): string => Math.round(rows).toLocaleString("en-GB");
+    const gone = `${Math.floor(100 * view.prepared)} % of the rows gone through`;
+    this.sampled.textContent =
+      view.prepared >= 1
+        ? ""
+        : view.rowsLookedAt > 0
+          ? `Sampled: ${count(view.rowsLookedAt)} of ${count(view.rowsPerColumn)} rows a column; ${gone}`
+          : gone;
+    if (view.prepared >= 1 && recording.prepared < 1) this.prepared();
   }
 
   /** With several recordings each trace has a plot, and each recording its colour and dash. */
@@ -161,7 +179,7 @@ function marksOf(recording: Recording, found: RecordingInspection | null): TimeM
   });
   return {
     spans,
-    gaps: recording.gaps,
+    gaps: recording.gaps ?? [],
     events: recording.events,
     cycles: cycleMarks(cyclesOf(recording, found)),
     clipped: clippedMarks(found?.clipped ?? null),

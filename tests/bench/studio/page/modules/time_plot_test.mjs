@@ -199,7 +199,7 @@ test("only the newest wish is fetched, and its neighbours when nothing more is w
   const loader = new plot.StretchLoader(
     async (from, to, columns) => {
       asked.push([from, to, columns]);
-      return { rowsPerColumn: 10, time: new Float64Array(0), traces: [] };
+      return { rowsPerColumn: 10, prepared: 1, time: new Float64Array(0), traces: [] };
     },
     (view) => shown.push(view),
     assert.fail,
@@ -217,6 +217,24 @@ test("only the newest wish is fetched, and its neighbours when nothing more is w
   await soon(120);
   assert.equal(asked.length, 2);
   assert.equal(shown.length, 2);
+  loader.end();
+});
+
+test("what was made of some rows is asked for again until it is of all", async () => {
+  const prepared = [0.4, 0.9, 1];
+  const shown = [];
+  const { it } = range();
+  const loader = new plot.StretchLoader(
+    async () => ({ rowsPerColumn: 10, prepared: prepared.shift(), time: new Float64Array(0), traces: [] }),
+    (view) => shown.push(view.prepared),
+    assert.fail,
+  );
+  it.show(it.first, it.last);
+  loader.want(it, 100);
+  await soon(150);
+  assert.deepEqual(shown, [0.4]);
+  await soon(3500);
+  assert.deepEqual(shown, [0.4, 0.9, 1]); // and no more
   loader.end();
 });
 

@@ -19,9 +19,10 @@ export const timeTab: RecordingTab = {
     const chosen = new Set(usual);
     const tools = element("div", { class: "tab_tools" });
     let isByHand = false; // what the address asks for is not written into it again
-    const time = new RecordingTime(context.api, context.complain, tools, (from, to, whole) => {
+    const moved = (from: number, to: number, whole: boolean): void => {
       if (isByHand) state.set({ [stateKeys.from]: whole ? null : from, [stateKeys.to]: whole ? null : to });
-    });
+    };
+    const time = new RecordingTime(context.api, context.complain, tools, moved, () => recording.reload());
     const overlay = new Overlay(context, recording, () => draw());
     /** Draws what is chosen, over the stretch of the address. */
     const draw = (): void => {

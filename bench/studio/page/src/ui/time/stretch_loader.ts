@@ -2,13 +2,14 @@ import type { TraceView } from "../../api/recordings";
 import type { TimeRange } from "./time_range";
 
 const maxColumns = 4000; // that the server gives at once
+const again_ms = 1000; // after an answer that is not yet what it will be
 
 type Fetch = (from: number, to: number, columns: number, signal: AbortSignal) => Promise<TraceView>;
 
 /**
  * Fetches what a plot shows, at the plot's pixels: the newest wish only, an outdated one is given up. When nothing
  * happens for a while it fetches a screen more on either side, so that moving along finds it there. What is shown
- * stays, stretched, until the new picture has come.
+ * stays, stretched, until the new picture has come. What was made of some rows is asked for again until it is of all.
  */
 export class StretchLoader {
   private asked: AbortController | null = null;
@@ -59,6 +60,11 @@ export class StretchLoader {
       if (asked.signal.aborted) return;
       this.have = { from, to, span, columns, complete: view.rowsPerColumn <= 1 };
       this.show(view);
+      if (view.prepared < 1) {
+        this.have = null;
+        this.idle = window.setTimeout(() => void this.load(range, columns, 0), again_ms);
+        return;
+      }
       if (screens === 0) this.prefetchWhenIdle(range, columns);
     } catch (error) {
       if (!asked.signal.aborted && screens === 0) this.failed(error);
