@@ -67,7 +67,55 @@ async function takePart(page) {
   }
 }
 
+/** What stands in the fields of a form of Work, and is ticked. */
+const given = (page) =>
+  page
+    .locator(".verb_page")
+    .evaluate((it) =>
+      [...it.querySelectorAll("input:not([type=checkbox]), input:checked, select")].map((field) => field.value),
+    );
+
 export const tests = {
+  async "an experiment is rehearsed and made by forms that are filled in"({ browser, studio }) {
+    await prepare(studio);
+    const page = await openPage(browser);
+    for (const [way, title] of [
+      ["Rehearse", "Rehearse a session with simulated observers"],
+      ["Make a session", "Make a session"],
+    ]) {
+      await page.goto(studio.page("sessions"));
+      await page.getByRole("link", { name: `${way} abx.protocol.toml` }).click();
+      await page.getByRole("heading", { name: title }).waitFor();
+      await page.locator(".verb_page").waitFor();
+      expect((await given(page)).includes("abx.protocol.toml"), `${way}: ${JSON.stringify(await given(page))}`);
+    }
+    // Made from the page, it is there to be begun.
+    await page.locator(".verb_page").getByLabel("output").fill("S07");
+    await page.locator(".verb_page details > summary").first().click();
+    await page.locator(".verb_page").getByLabel("subject", { exact: true }).fill("S07");
+    await page.getByRole("button", { name: "Run" }).click();
+    await page.locator(".job_page", { hasText: "done" }).waitFor();
+    await page.goto(studio.page("sessions"));
+    await page.getByRole("button", { name: "Begin S07.h5" }).waitFor();
+    expectNoComplaints(page);
+  },
+
+  async "without a key nothing is offered that needs one, and without a protocol what to do first"({
+    browser,
+    studio,
+  }) {
+    await studio.serve();
+    const page = await openPage(browser);
+    await page.goto(studio.page("sessions"));
+    await page.getByText("An experiment begins with a file NAME.protocol.toml").waitFor();
+    await writeFile(join(studio.folder, "abx.protocol.toml"), protocol);
+    await page.reload();
+    await page.getByRole("link", { name: "Rehearse abx.protocol.toml" }).waitFor();
+    expectEqual(await page.getByRole("link", { name: /Make a session/ }).count(), 0, "ways to make one without a key");
+    await page.getByText("where the studio was started with --key-file").waitFor();
+    expectNoComplaints(page);
+  },
+
   async "a whole ABX session is run from the experimenter's page"({ browser, studio, screenshots }) {
     await prepare(studio);
     const experimenter = await openPage(browser);
@@ -134,6 +182,12 @@ export const tests = {
       });
       expectEqual(await audit(experimenter), [], `what of the trials' table is not accessible in the ${colorScheme}`);
     }
+    await experimenter.getByRole("link", { name: "Analyse" }).click();
+    await experimenter.locator(".verb_page").waitFor();
+    expect(
+      (await given(experimenter)).includes("S01.h5"),
+      `to be analysed: ${JSON.stringify(await given(experimenter))}`,
+    );
   },
 
   async "who has the subject's address gets at nothing else, and sees nothing of the loop"({ browser, studio }) {

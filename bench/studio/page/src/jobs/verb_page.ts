@@ -64,15 +64,23 @@ export class VerbPage {
     if (listed && results.length > 0) this.fields.get(listed.name)?.set(results);
   }
 
-  /** Files that the address names: `?recording=cut.h5&law=fits/kelvin.law.toml`; and a name for the result. */
+  /**
+   * Files that the address names, `?recording=cut.h5&law=fits/kelvin.law.toml`, `protocol`, a line each of `sessions`; and a name
+   * for the result.
+   */
   private prefill(names: OfferedNames, recording: string | null): void {
-    const given = [recording, this.context.state.get("law")].filter((it) => it !== null);
+    const { state } = this.context;
+    const given = [recording, state.get("law"), state.get("protocol")].filter((it) => it !== null);
     for (const name of given) {
       const value = this.form.values.find((it) => it.kind === "file" && namesFor(it, names).includes(name));
       if (value) this.fields.get(value.name)?.set(value.repeated ? [name] : name);
     }
+    const sessions = state.get("sessions")?.split("\n") ?? [];
+    const listed = this.form.values.find((it) => it.kind === "file" && it.repeated);
+    const known = sessions.filter((it) => listed && namesFor(listed, names).includes(it));
+    if (listed && known.length > 0) this.fields.get(listed.name)?.set(known);
     const output = this.form.values.find((it) => it.kind === "output" && it.name === "--output");
-    const stem = (given[0] ?? "").replace(/.*\//, "").replace(/(\.law\.toml|\.h5)$/, "");
+    const stem = (given[0] ?? "").replace(/.*\//, "").replace(/(\.law\.toml|\.protocol\.toml|\.h5)$/, "");
     const verb = this.form.verb.replace(/.* /, "");
     if (output) this.fields.get(output.name)?.set(freeName(stem ? `${stem}-${verb}` : verb, output, names));
   }

@@ -131,6 +131,59 @@ function startForm(
   );
 }
 
+/** What is done with an experiment before its sessions and after them: forms of Work, filled in. */
+function waysOf(workspace: Workspace, hasKeyFile: boolean): HTMLElement {
+  const link = (verb: string, words: string, named: string, key: string): HTMLElement =>
+    element(
+      "a",
+      { href: `#/work/${verb}?${key}=${encodeURIComponent(named)}`, "aria-label": `${words} ${named}` },
+      words,
+    );
+  const protocols = workspace.files.filter((it) => it.kind === "protocol");
+  const finished = workspace.sessions.filter((it) => it.finished);
+  if (protocols.length === 0)
+    return element(
+      "p",
+      {},
+      "An experiment begins with a file NAME.protocol.toml in this folder: what is compared, how and by how many. ",
+      element("a", { href: "#/work/session-plan" }, "Plan how many subjects it takes"),
+    );
+  return element(
+    "ul",
+    { class: "ways", "aria-label": "Experiments" },
+    ...protocols.map(({ name }) =>
+      element(
+        "li",
+        {},
+        element("span", { class: "name" }, name),
+        link("session-simulate", "Rehearse", name, "protocol"),
+        hasKeyFile ? link("session-new", "Make a session", name, "protocol") : null,
+      ),
+    ),
+    finished.length > 0 && hasKeyFile
+      ? element(
+          "li",
+          {},
+          element("span", { class: "name" }, `${finished.length} finished`),
+          element(
+            "a",
+            {
+              href: `#/work/session-analyze?sessions=${encodeURIComponent(finished.map((it) => it.name).join("\n"))}`,
+            },
+            "Analyse",
+          ),
+        )
+      : null,
+    hasKeyFile
+      ? null
+      : element(
+          "li",
+          { class: "quiet" },
+          "Sessions are made and analysed here where the studio was started with --key-file FILE.",
+        ),
+  );
+}
+
 function mount(root: HTMLElement, context: Context): () => void {
   const card = progressCard(context);
   const list = element("ul", { class: "files", "aria-label": "Sessions" });
@@ -138,12 +191,12 @@ function mount(root: HTMLElement, context: Context): () => void {
   const intro = element(
     "p",
     { class: "quiet" },
-    "While a session runs the scope shows nothing, and nobody can tell here which sample is felt. ",
-    "Sessions are made by 'kerf session new' and read by 'kerf session analyze'.",
+    "While a session runs the scope shows nothing, and nobody can tell here which sample is felt.",
   );
+  const ways = element("div", {});
   root.append(
     element("h1", { tabindex: -1 }, "Sessions"),
-    element("div", { class: "columns" }, element("div", {}, intro, list, form), card.root),
+    element("div", { class: "columns" }, element("div", {}, intro, ways, list, form), card.root),
     folderQuality(context, () => known),
   );
   let device = "";
@@ -170,6 +223,7 @@ function mount(root: HTMLElement, context: Context): () => void {
     const workspace = await context.api.get<Workspace>("/api/workspace");
     device = workspace.device;
     known = workspace.sessions;
+    ways.replaceChildren(waysOf(workspace, hasKeyFile));
     list.replaceChildren(
       ...workspace.sessions.map((it) =>
         element(
@@ -186,7 +240,7 @@ function mount(root: HTMLElement, context: Context): () => void {
       ),
     );
     if (workspace.sessions.length === 0)
-      list.replaceChildren(element("li", {}, "There is no session in this folder: make one by 'kerf session new'."));
+      list.replaceChildren(element("li", {}, "There is no session in this folder yet."));
   };
 
   const look = async (): Promise<void> => {
@@ -202,13 +256,13 @@ function mount(root: HTMLElement, context: Context): () => void {
     "click",
     () => void context.api.post("/api/session/stop").then(look).catch(context.complain),
   );
-  refresh()
+  look()
+    .then(refresh) // which offers what there is a key for
     .then(() => {
       const asked = known.find((it) => it.id === context.place.id);
       if (asked && running === "" && !asked.finished && asked.error === "") choose(asked);
     })
     .catch(context.complain);
-  look().catch(context.complain);
   const timer = setInterval(() => void look().catch(context.complain), 500);
   return () => clearInterval(timer);
 }
