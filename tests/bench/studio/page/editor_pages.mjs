@@ -59,7 +59,31 @@ async function onCurve(page, branch, share) {
   );
 }
 
-export async function drawByMouse(page, studio) {
+/** A page that is begun anew shows what was drawn, and one step back what it began with; so does a studio at the same address. */
+async function keepWhatWasDrawn(page, studio) {
+  await openEditor(page, studio);
+  const begun = await breakpoints(page);
+  const at = await onCurve(page, "closing", 0.4);
+  await page.mouse.click(at.x, at.y);
+  const drawn = await breakpoints(page);
+  expectEqual(drawn.length, begun.length + 1, "breakpoints after a click");
+  await page.reload();
+  await page.locator("g.knot").first().waitFor();
+  expectEqual(await breakpoints(page), drawn, "after a reload");
+  const port = new URL(studio.origin).port;
+  studio.process.kill("SIGKILL");
+  await studio.ended;
+  await studio.serve("--port", port);
+  await openEditor(page, studio);
+  expectEqual(await breakpoints(page), drawn, "after the studio was killed and begun anew");
+  await page.getByRole("button", { name: "Undo", exact: true }).click();
+  expectEqual(await breakpoints(page), begun, "one step back");
+  await page.reload();
+  await page.locator("g.knot").first().waitFor();
+  expectEqual(await breakpoints(page), begun, "what was taken back stays so");
+}
+
+async function drawByMouse(page, studio) {
   await openEditor(page, studio);
   expectEqual(await count(page), 2, "breakpoints at first");
   const caption = await page.textContent("table.figures caption");
@@ -112,7 +136,7 @@ async function press(page, ...keys) {
   for (const key of keys) await page.keyboard.press(key);
 }
 
-export async function drawByKeys(page, studio) {
+async function drawByKeys(page, studio) {
   await page.goto(`${studio.url}#/editor`);
   await page.locator(".choices a").first().waitFor();
   await tabTo(page, "the recording", () => document.activeElement?.textContent === "cut.h5");
@@ -155,7 +179,7 @@ export async function drawByKeys(page, studio) {
   expectThatItRuns(studio, "by_keys");
 }
 
-export async function workOnALaw(page, studio) {
+async function workOnALaw(page, studio) {
   await openEditor(page, studio);
   await page.locator(".optima select").selectOption("4");
   await page.getByRole("button", { name: "Fill in the best" }).click();
@@ -192,9 +216,9 @@ export async function workOnALaw(page, studio) {
 
   await page.reload();
   await page.locator("g.knot").first().waitFor();
-  expectEqual(await count(page), 2, "a page that is loaded anew begins anew");
+  expectEqual((await breakpoints(page, "opening")).length, 0, "one branch, as it was left");
   await page.getByLabel("Start from law").selectOption({ label: "worked.law.toml" });
-  await until("the law's breakpoints are there", async () => (await count(page)) === 5);
+  await until("the law's breakpoints are there", async () => (await breakpoints(page, "opening")).length === 5);
   await save(page, "again");
   await page.getByText("kerf check again.law.toml").waitFor();
   for (const part of ["knot", "closing", "opening"])
@@ -206,7 +230,7 @@ export async function workOnALaw(page, studio) {
 }
 
 /** Nothing runs, so that there is nothing to feel it on; Escape is the loop's and leaves the drawing as it is. */
-export async function leaveTheLoopAlone(page, studio) {
+async function leaveTheLoopAlone(page, studio) {
   await openEditor(page, studio);
   await page.getByRole("button", { name: "Feel it now" }).click();
   await page.locator("#notice.wrong").waitFor();
@@ -245,17 +269,6 @@ async function feelWhileDrawing(page, studio) {
   expect((await studio.api("/api/live/status")).json.released, "a law that is felt leaves it released");
 }
 
-/** All of it on one page; the studio serves a folder with cut.h5 and its cycles. */
-export async function testEditor(page, studio) {
-  await drawByMouse(page, studio);
-  await page.reload();
-  await drawByKeys(page, studio);
-  await page.reload();
-  await workOnALaw(page, studio);
-  await page.reload();
-  await leaveTheLoopAlone(page, studio);
-}
-
 /** A studio and a page for each. */
 function alone(part, except = []) {
   return async ({ browser, studio, screenshots }) => {
@@ -272,6 +285,10 @@ const refused = [/status of 4\d\d/]; // what the browser says of an answer that 
 
 export const tests = {
   "a law is drawn by mouse, taken back, saved and runs": alone(drawByMouse),
+  "what was drawn outlives the page and the studio": alone(keepWhatWasDrawn, [
+    /ERR_CONNECTION_REFUSED/,
+    /status of 403/,
+  ]),
   "a law is drawn, changed and saved by keys alone": alone(drawByKeys),
   "a law is made by numbers and optima, replaced and gone on with": alone(workOnALaw, refused),
   "a law is felt while it is drawn": alone(feelWhileDrawing),

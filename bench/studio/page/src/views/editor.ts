@@ -9,6 +9,7 @@ import { Drawing } from "../editor/drawing";
 import { FeelPanel } from "../editor/panels/feel_panel";
 import { Figures } from "../editor/panels/figures";
 import { History } from "../editor/history";
+import { keepDrawing, keptDrawing } from "../editor/kept_drawing";
 import { isUndo, takeKeys } from "../editor/keys";
 import { KnotTable } from "../editor/panels/knot_table";
 import { startKnots } from "../editor/knots";
@@ -21,7 +22,7 @@ import { element, labelled, select } from "../ui/dom";
 import { Latest } from "../ui/latest";
 import type { Context, OpenRecording, View } from "../ui/view";
 
-// What was drawn stays while the page does, whatever is looked at in between.
+// What was drawn stays, whatever is looked at in between: its steps while the page does, where it ended for longer.
 const drafts = new Map<string, History<Knots>>();
 
 const keys =
@@ -29,10 +30,20 @@ const keys =
   "the ends, Space onto the law, Enter or A adds. On a breakpoint: arrows move it, Shift ten times as far, Alt a tenth, " +
   "A adds one beside it, Delete removes it. Ctrl+Z takes back, Ctrl+Shift+Z does it again.";
 
+const nameOf = (curve: EditorCurve): string => `${curve.recording}/${curve.axis}`;
+
 function draftOf(curve: EditorCurve): History<Knots> {
-  const name = `${curve.recording}/${curve.axis}`;
-  const draft = drafts.get(name) ?? new History(startKnots(curve));
+  const name = nameOf(curve);
+  const draft = drafts.get(name) ?? begunDraft(curve);
   drafts.set(name, draft);
+  return draft;
+}
+
+/** As it was left in this browser, one step after the line that any drawing begins with. */
+function begunDraft(curve: EditorCurve): History<Knots> {
+  const draft = new History(startKnots(curve));
+  const kept = keptDrawing(nameOf(curve));
+  if (kept) draft.record(kept);
   return draft;
 }
 
@@ -74,7 +85,9 @@ function edit(
   const tools = toolbar(context, drawing, canvas, axis, settled);
   takePointer(drawing, canvas, settled, context.complain);
   takeKeys(drawing, canvas, { settled, announce, refuse: context.complain });
+  let drawn = drawing.knots;
   drawing.onChange(() => {
+    if (drawn !== drawing.knots) keepDrawing(nameOf(curve), (drawn = drawing.knots));
     figures.show();
     canvas.showWorst(figures.error);
     numbers.show();
