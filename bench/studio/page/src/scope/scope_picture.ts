@@ -5,7 +5,7 @@ import { StretchLoader } from "../ui/time/stretch_loader";
 import { TimeStack } from "../ui/time/time_stack";
 import type { TimeLine } from "../ui/time/time_line";
 import { LiveColumns, ticksInColumn } from "./live_columns";
-import { beforeTrigger, TriggerFinder, type TriggerSettings } from "./trigger";
+import { beforeTrigger, crossingRow, TriggerFinder, type TriggerSettings } from "./trigger";
 import { emptyLine, plotsOf, takeView } from "../recordings/trace_groups";
 
 const kept_s = 60; // that the server keeps
@@ -39,7 +39,7 @@ export class ScopePicture {
   private readonly loader: StretchLoader;
 
   constructor(
-    api: Api,
+    private readonly api: Api,
     /** The stream should come with as many ticks in a column. */
     private readonly restream: (ticks: number) => void,
     zoomed: (factor: number) => void,
@@ -118,8 +118,10 @@ export class ScopePicture {
     if (!columns.push(frame)) return this.restart();
     if (this.paused) return;
     const at = this.trigger.mode === "off" ? null : this.finder.look(columns, this.trigger, this.window_s);
-    if (at !== null) this.freeze(at);
-    else if (this.isWaiting) this.follow();
+    if (at !== null) {
+      this.freeze(at);
+      if (columns.ticks > 1) void this.refine(at, columns.column_s);
+    } else if (this.isWaiting) this.follow();
   }
 
   /** When its window begins; from now on. */
@@ -153,18 +155,42 @@ export class ScopePicture {
 
   /** Shows the window about a trigger, until the next. */
   private freeze(at: number): void {
-    const { range, shared } = this.stack;
+    const { shared } = this.stack;
     this.attach();
     this.keepLines();
-    this.frozen = at;
     this.frozenAt = performance.now();
-    range.follow(at + (1 - beforeTrigger) * this.window_s, this.window_s);
-    shared.origin_s = at;
     shared.timeLabel = labels.triggered;
+    this.showFrom(at);
+    if (this.trigger.mode === "single") this.pause();
+  }
+
+  private showFrom(at: number): void {
+    const { range, shared } = this.stack;
+    this.frozen = at;
+    shared.origin_s = at;
+    const to = at + (1 - beforeTrigger) * this.window_s;
+    if (this.paused) {
+      this.bound(to);
+      range.show(to - this.window_s, to);
+    } else range.follow(to, this.window_s);
     this.stack.draw();
     this.drawn();
     this.triggered(at);
-    if (this.trigger.mode === "single") this.pause();
+  }
+
+  /** From the column in which it triggered to the row. */
+  private async refine(at: number, column_s: number): Promise<void> {
+    const settings = this.trigger;
+    const { period_s } = this;
+    const order = { traces: String(settings.trace), from: at - period_s, to: at + column_s, columns: 4000 };
+    try {
+      const view = await this.api.view("/api/live/view", order);
+      const values = settings.edge === "rising" ? view.traces[0]?.largest : view.traces[0]?.smallest;
+      const row = crossingRow(view.time, values ?? [], settings, at - 0.5 * period_s);
+      if (this.frozen === at && row !== null) this.showFrom(row);
+    } catch {
+      // the column is what is known
+    }
   }
 
   private thaw(): void {
@@ -199,10 +225,15 @@ export class ScopePicture {
     const { range, shared } = this.stack;
     this.keepLines();
     range.following = false;
-    range.bound(Math.max(0, range.to - kept_s), Math.max(range.to, this.window_s), 10 / this.rate_hz);
+    this.bound(range.to);
     if (this.frozen === null) shared.timeLabel = labels.paused;
     this.stack.draw();
     this.loader.want(range, this.stack.columns);
+  }
+
+  /** What a paused picture can be moved over. */
+  private bound(to: number): void {
+    this.stack.range.bound(Math.max(0, to - kept_s), Math.max(to, this.window_s), 10 / this.rate_hz);
   }
 
   resume(): void {

@@ -65,6 +65,18 @@ export class TriggerFinder {
   }
 }
 
+/** The time of the first row from `from_s` on that is at the level or beyond it; null: none. */
+export function crossingRow(
+  time: ArrayLike<number>,
+  values: ArrayLike<number>,
+  { level, edge }: TriggerSettings,
+  from_s: number,
+): number | null {
+  const up = edge === "rising" ? 1 : -1;
+  for (let k = 0; k < time.length; ++k) if (time[k]! >= from_s && up * values[k]! >= up * level) return time[k]!;
+  return null;
+}
+
 function swingOf(smallest: Float64Array, largest: Float64Array): number {
   let [low, high] = [Infinity, -Infinity];
   for (let k = 0; k < smallest.length; ++k) {

@@ -20,7 +20,7 @@ const bundle = await build({
 const code = Buffer.from(bundle.outputFiles[0].contents).toString("base64");
 globalThis.matchMedia = () => ({ addEventListener: () => {} });
 const all = await import(`data:text/javascript;base64,${code}`);
-const { LiveColumns, TriggerFinder, spectrumOf, peakOf, powerOfTwo, deadlineAt, missedTicks } = all;
+const { LiveColumns, TriggerFinder, crossingRow, spectrumOf, peakOf, powerOfTwo, deadlineAt, missedTicks } = all;
 
 let failed = 0;
 function expectEqual(found, expected, what) {
@@ -67,6 +67,15 @@ const again = triggers(noisy, {}, 4, 1200).filter((it) => it > 1000);
 expectEqual(again, [1492], "once a rise, though it flickers at the level");
 const gap = ramp.map((it, k) => (k > 20 && k < 40 ? null : it));
 expectEqual(triggers(gap)[0], 40, "a crossing within a gap is that after it");
+
+const steps = [0, 1, 2, 3, 4, 5].map((k) => 1e-3 * k);
+const rises = [0.9, 0.1, 0.4, 0.6, 0.7, 0.2];
+const rows = ["rising", "falling"].map((edge) => crossingRow(steps, rises, { level: 0.5, edge }, 1e-3));
+expectEqual(
+  [...rows, crossingRow(steps, rises, { level: 2, edge: "rising" }, 0)],
+  [3e-3, 1e-3, null],
+  "rows of a crossing",
+);
 
 expectEqual([powerOfTwo(1), powerOfTwo(1023), powerOfTwo(1024)], [0, 512, 1024], "powers of two");
 const tone = Array.from({ length: 1024 }, (_, k) => 5 + 0.25 * Math.sin(2 * Math.PI * 125 * k * 1e-3));
