@@ -191,6 +191,26 @@ export const tests = {
     expectNoComplaints(page);
   },
 
+  async "a studio that is silent for ten seconds is said to be, and all goes on without a reload"({ browser, studio }) {
+    const page = await prepare({ browser, studio });
+    await open(page, studio, "cut.h5");
+    const seen = await reading(page);
+    studio.process.kill("SIGSTOP");
+    await page.keyboard.press("2");
+    await isShown(page, "loop");
+    await page.getByText("No answer from the studio").waitFor();
+    await page.keyboard.press("1"); // another wish, before the first has been answered
+    await page.waitForTimeout(10_000);
+    studio.process.kill("SIGCONT");
+    await until("what was wished for last is there", async () => (await reading(page)) === seen);
+    await until("the bar has an answer", async () => (await page.getByText("No answer").count()) === 0);
+    await page.keyboard.press("2");
+    await until("the loop too", async () => /cycle/i.test(await page.textContent(".loops_text")));
+    studio.record("later.h5", 20);
+    await until("the list follows the folder again", async () => (await rows(page)).includes("later"));
+    expectNoComplaints(page);
+  },
+
   async "commands and places are found by their letters, and the help lists the keys that work"({ browser, studio }) {
     const page = await prepare({ browser, studio });
     await page.goto(studio.page("scope"));
