@@ -13,6 +13,7 @@
 #include "html/html.h"
 #include "inspect/flagged_cycles.h"
 #include "report/charts.h"
+#include "units/units.h"
 
 namespace kerf::bench {
 namespace {
@@ -80,14 +81,14 @@ CellRow cells_of(const CycleRemarks& cycle) {
           cycle.reasons};
 }
 
-std::string cycle_tables(const std::vector<CycleRemarks>& cycles, const std::string& force_unit) {
+std::string cycle_tables(const std::vector<CycleRemarks>& cycles, const schema::Axis& axis) {
   const CellRow head{"cycle",
                      "begin [s]",
                      "closing [s]",
                      "hold [s]",
                      "opening [s]",
-                     fmt::format("peak [{}]", force_unit),
-                     "closing work [J]",
+                     fmt::format("peak [{}]", axis.force_unit),
+                     fmt::format("closing work [{}]", work_unit(axis.force_unit, axis.position_unit)),
                      "counts",
                      "flags",
                      "why"};
@@ -147,7 +148,7 @@ std::string section_of_cycles(const schema::RecordedRows& rows, std::size_t axis
                                  good, cycles.size());
   html += "<p class=\"soft\">" + who_said_so(about.cycle_flags, force_unit) + "</p>\n";
   if (good < cycles.size()) html += html_figure(draw(flagged_chart(cycles, rows, axis)));
-  return html + cycle_tables(cycles, force_unit);
+  return html + cycle_tables(cycles, about.axes[axis]);
 }
 
 }  // namespace

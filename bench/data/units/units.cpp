@@ -184,4 +184,10 @@ Unit parse_unit(std::string_view given) {
   return unit;
 }
 
+std::string work_unit(std::string_view force_unit, std::string_view position_unit) {
+  const bool is_energy =
+      (force_unit == "N" && position_unit == "m") || (force_unit == "N·m" && position_unit == "rad");
+  return is_energy ? "J" : fmt::format("{}·{}", force_unit, position_unit);
+}
+
 }  // namespace kerf::bench

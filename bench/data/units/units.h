@@ -26,4 +26,8 @@ struct Unit {
 /// @throws std::invalid_argument that names the symbol and lists those known.
 [[nodiscard]] Unit parse_unit(std::string_view text);
 
+/// The unit of a force times the way it goes: "J" of N over m and of N·m over rad; "N·rad" of a force over an
+/// angle, which is no energy before it is multiplied by a lever.
+[[nodiscard]] std::string work_unit(std::string_view force_unit, std::string_view position_unit);
+
 }  // namespace kerf::bench
