@@ -108,7 +108,7 @@ std::string cycle_tables(const std::vector<CycleRemarks>& cycles, const schema::
 Chart flagged_chart(const std::vector<CycleRemarks>& cycles, const schema::RecordedRows& rows,
                     std::size_t axis) {
   Chart chart = force_chart(rows.about(), rows, axis);
-  chart.title = "Force over time, cycles that do not count in orange";
+  chart.title = "Force over time, cycles that do not count in red";
   double highest = -std::numeric_limits<double>::infinity();
   for (const Curve& curve : chart.curves) {
     for (const double y : curve.y) highest = std::max(highest, y);
@@ -120,7 +120,7 @@ Chart flagged_chart(const std::vector<CycleRemarks>& cycles, const schema::Recor
     const CycleFacts& begin = cycles[first].facts;
     const CycleFacts& last = cycles[i - 1].facts;
     chart.bands.push_back(
-        {.begin = begin.begin_s, .end = last.begin_s + last.duration_s, .colour = Colour::orange});
+        {.begin = begin.begin_s, .end = last.begin_s + last.duration_s, .colour = Colour::vermillion});
     chart.labels.push_back({.x = begin.begin_s,
                             .y = highest,
                             .text = begin.number == last.number

@@ -1,5 +1,7 @@
 // What somebody with fresh eyes stopped at: what is drawn means what reports mean by it, and the page says what it does.
 
+import { join } from "node:path";
+
 import { expect, expectEqual, expectNoComplaints, openPage, until } from "./harness.mjs";
 
 async function prepare({ browser, studio }, options = {}) {
@@ -17,6 +19,74 @@ async function open(page, studio, tab) {
 }
 
 export const tests = {
+  // As in reports: tests/bench/analysis/report/charts_test.cpp and residual_charts_test.cpp.
+  async DrawsClosingInBlueAndResidualsAsMeasuredLessLaw({ browser, studio }) {
+    const page = await prepare({ browser, studio });
+    await open(page, studio, "loop?loops=average");
+    await page.waitForSelector(".loops_frame .curve.closing");
+    const classes = (name) => page.locator(`.loops_frame .curve.${name}`).getAttribute("class");
+    expect((await classes("closing")).includes("blue"), "closing is blue");
+    expect((await classes("opening")).includes("vermillion"), "opening is red");
+    await open(page, studio, "time");
+    const border = (name) => page.locator(`.key.${name}`).evaluate((it) => getComputedStyle(it).borderTopColor);
+    const token = (name) =>
+      page.evaluate((it) => {
+        const probe = document.body.appendChild(document.createElement("i"));
+        probe.style.color = `var(--${it})`;
+        const { color } = getComputedStyle(probe);
+        probe.remove();
+        return color;
+      }, name);
+    expectEqual(await border("closing"), await token("blue"), "so are its bands over time");
+    expectEqual(await border("opening"), await token("orange"), "opening is orange");
+    await open(page, studio, "law");
+    await page.waitForSelector(".editor .curve");
+    const drawn = (name) => page.locator(`.editor .curve.${name}`).first().getAttribute("class");
+    expect((await drawn("closing")).includes("blue") && (await drawn("opening")).includes("vermillion"), "the editor");
+    await open(page, studio, "fits");
+    await page.waitForSelector(".beside_laws .extremes");
+    for (const k of [2, 3]) {
+      const texts = await page.locator(".beside_laws figure").nth(k).locator(".axis").allTextContents();
+      expect(
+        texts.some((it) => it.startsWith("measured − law")),
+        `an axis of ${texts} says which is taken from which`,
+      );
+    }
+    expectNoComplaints(page);
+  },
+
+  async DrawsRowsThatNoLawIsJudgedByInGreyAndNoLawInThem({ browser, studio, screenshots }) {
+    for (const colorScheme of ["light", "dark"]) {
+      const page = await prepare({ browser, studio }, { colorScheme, viewport: { width: 1280, height: 2400 } });
+      await open(page, studio, "fits?laws=kelvin");
+      await page.waitForSelector(".beside_laws .extremes.kelvin");
+      const id = await studio.id("recordings", "cut.h5");
+      const law = await studio.id("laws", "cut.fit/kelvin.law.toml");
+      const { over_time: forces, smallest } = (
+        await studio.api(`/api/residuals?id=${id}&axis=theta&law=${law}&columns=600`)
+      ).json;
+      const left = smallest.filter((it) => it === null).length;
+      expect(left > 10, `${left} columns are out of contact`);
+      smallest.forEach((it, i) => expectEqual(it === null, forces.law_smallest[i] === null, `column ${i}`));
+      for (const k of [1, 2]) {
+        const figure = page.locator(".beside_laws figure").nth(k);
+        expect((await figure.locator(".band.grey").count()) > 1, "stretches are grey");
+        const legend = await figure.locator(".legend li").allTextContents();
+        expect(legend.includes("rows that no law is judged by"), `${legend} says what grey is`);
+      }
+      const pieces = (it) => it.getAttribute("d").split("M").length - 1;
+      const residual = await page.locator(".beside_laws .extremes.kelvin").evaluate(pieces);
+      const bands = await page.locator(".beside_laws figure").nth(2).locator(".plot .band").count();
+      expect(Math.abs(residual - bands) <= 1, `${residual} pieces of a residual between ${bands} bands`);
+      expect(
+        (await page.locator(".beside_laws figure").nth(1).locator(".extremes.grey").count()) === 1,
+        "what was measured there is grey",
+      );
+      await page.locator(".drawn_laws").screenshot({ path: join(screenshots, `judged-${colorScheme}.png`) });
+      expectNoComplaints(page);
+    }
+  },
+
   async CallsWorkOverAnAngleByWhatItIs({ browser, studio }) {
     const page = await prepare({ browser, studio });
     await open(page, studio, "cycles");

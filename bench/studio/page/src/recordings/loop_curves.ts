@@ -16,9 +16,15 @@ export function loopCurves(loops: Loops, kind: Kind, look: number, recording: st
     return [lineOf(recording, loops.whole.position, loops.whole.force, { colour, width: 1, name: of("all rows") })];
   const { position, closing, opening } = loops.average;
   if (kind === "average" || (kind === "all" && look > 0)) {
+    // Beside others a recording has one colour; by itself closing is blue and opening red, as in reports.
+    const named = (what: string): { marked: boolean; name: string } => ({ marked, name: of(what) });
     return [
-      lineOf(of("closing"), position, closing, { colour, width: 2.75, marked }),
-      lineOf(of("opening"), position, opening, { colour, width: 1.25, marked }),
+      lineOf(of("closing"), position, closing, { colour, width: 2.75, ...named("closing") }),
+      lineOf(of("opening"), position, opening, {
+        colour: marked ? colour : "vermillion",
+        width: 1.25,
+        ...named("opening"),
+      }),
     ];
   }
   const width = kind === "one" ? 2 : 0.8;

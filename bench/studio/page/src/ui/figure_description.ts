@@ -51,13 +51,20 @@ export interface FigureTick {
   at: number | null;
   name: string;
 }
+/** A stretch of x, behind everything. */
+export interface FigureBand {
+  begin: number | null;
+  end: number | null;
+  colour: Colour;
+  label?: string; // none: not in the legend
+}
 export interface Figure {
   title?: string;
   x_label: string; // with its unit: "time [s]"
   y_label: string;
   curves: FigureCurve[];
   areas?: FigureArea[];
-  bands?: { begin: number | null; end: number | null; colour: Colour }[]; // of x
+  bands?: FigureBand[];
   cells: FigureCells;
   vertical: FigureMarker[];
   horizontal: FigureMarker[];
