@@ -18,7 +18,49 @@ async function open(page, studio, tab) {
   await page.waitForSelector(".tab_panel > *");
 }
 
+/** Of two colours, "#rrggbb" or "rgb(r, g, b)": WCAG 2. */
+function contrast(one, other) {
+  const light = (colour) => {
+    const channels = colour.startsWith("#")
+      ? [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16))
+      : colour.match(/\d+/g).map(Number);
+    const [r, g, b] = channels.map((it) => {
+      const share = it / 255;
+      return share <= 0.04045 ? share / 12.92 : ((share + 0.055) / 1.055) ** 2.4;
+    });
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+  };
+  const [high, low] = [light(one), light(other)].sort((a, b) => b - a);
+  return (high + 0.05) / (low + 0.05);
+}
+
 export const tests = {
+  async TellsAllCyclesApartByTheirOrder({ browser, studio, screenshots }) {
+    for (const colorScheme of ["light", "dark"]) {
+      const page = await prepare({ browser, studio }, { colorScheme });
+      await open(page, studio, "loop");
+      await page.waitForSelector(".loops_frame .curve");
+      const colours = await page
+        .locator(".loops_frame .curve")
+        .evaluateAll((curves) => curves.map((it) => it.getAttribute("stroke")));
+      expect(colours.length > 3, `${colours.length} cycles`);
+      expectEqual(new Set(colours).size, colours.length, "cycles of one colour each");
+      const ground = await page.evaluate(() => getComputedStyle(document.documentElement).backgroundColor);
+      for (const it of colours) expect(contrast(it, ground) >= 3, `${it} on ${ground}: ${contrast(it, ground)}`);
+      const brighter = colours.map((it) => contrast(it, "#000000"));
+      expectEqual(
+        brighter,
+        [...brighter].sort((a, b) => a - b),
+        "lighter from cycle to cycle",
+      );
+      const legend = page.locator(".loops_frame .legend li");
+      expectEqual(await legend.allTextContents(), [`cycle 1 to cycle ${colours.length}, in their order`], "the legend");
+      expect((await legend.locator(".sample.ordered").count()) > 3, "shows the colours");
+      await page.screenshot({ path: join(screenshots, `cycles-in-order-${colorScheme}.png`) });
+      expectNoComplaints(page);
+    }
+  },
+
   // As in reports: tests/bench/analysis/report/charts_test.cpp and residual_charts_test.cpp.
   async DrawsClosingInBlueAndResidualsAsMeasuredLessLaw({ browser, studio }) {
     const page = await prepare({ browser, studio });

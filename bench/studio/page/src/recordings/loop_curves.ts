@@ -27,8 +27,21 @@ export function loopCurves(loops: Loops, kind: Kind, look: number, recording: st
       }),
     ];
   }
-  const width = kind === "one" ? 2 : 0.8;
+  const width = kind === "one" ? 2 : 1;
+  const last = loops.loops.length - 1;
+  const isOrdered = kind === "all" && !marked && last > 0;
   return loops.loops.map((it, k) =>
-    lineOf(k === 0 ? recording : "", it.position, it.force, { colour, width, name: of(`cycle ${it.cycle}`) }),
+    lineOf(k === 0 ? recording : "", it.position, it.force, {
+      colour,
+      width,
+      name: of(`cycle ${it.cycle}`),
+      ...(isOrdered ? { order: k / last } : {}),
+    }),
   );
+}
+
+/** What the colours of cycles at once mean; empty where they mean nothing. */
+export function orderInWords(curves: readonly FigureCurve[]): string {
+  const ordered = curves.filter((it) => it.order !== undefined);
+  return ordered.length === 0 ? "" : `${ordered[0]!.name} to ${ordered[ordered.length - 1]!.name}, in their order`;
 }

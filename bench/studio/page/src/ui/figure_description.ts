@@ -14,6 +14,7 @@ export interface FigureCurve {
   of: readonly number[]; // the number of what each point stands for; empty: of nothing
   name?: string; // of its column in a table, where the label does not say it
   marked?: boolean; // with its colour's shape along it, so that not the colour alone tells it from others
+  order?: number; // its place in an order, from 0 to 1, which gives it a colour of a sequence
 }
 /** What lies between two lines over x; null breaks it. */
 export interface FigureArea {
@@ -65,6 +66,7 @@ export interface Figure {
   curves: FigureCurve[];
   areas?: FigureArea[];
   bands?: FigureBand[];
+  ordered?: string; // what the order of its curves is, in the words of the legend
   cells: FigureCells;
   vertical: FigureMarker[];
   horizontal: FigureMarker[];

@@ -59,7 +59,7 @@ export function dashOf(style: Style): readonly number[] {
 }
 
 function curveShape(curve: FigureCurve, frame: Frame, style: Style): Shape {
-  const colour = style.colours[curve.colour];
+  const colour = curve.order === undefined ? style.colours[curve.colour] : style.ordered(curve.order);
   const kind = `curve ${curve.colour}${curve.name ? ` ${curve.name.replace(/\W+/g, "_")}` : ""}`;
   if (curve.mark === "boxes")
     return { kind: "path", class: kind, d: boxPath(curve, frame), fill: colour, opacity: 0.6 };

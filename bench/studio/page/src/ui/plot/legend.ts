@@ -15,7 +15,7 @@ export interface Entry {
 const finite = (value: number | null | undefined): boolean => Number.isFinite(value);
 
 /** What of a figure has a name; each once. */
-export function entriesOf({ cells, areas = [], bands = [], curves }: Figure): Entry[] {
+export function entriesOf({ cells, areas = [], bands = [], curves, ordered }: Figure): Entry[] {
   const entries: Entry[] = cells.kinds.map((kind) => ({
     label: kind.label,
     sample: (x, y, width, height, style) => groundOf([{ x, y, width, height }], kind, style),
@@ -26,6 +26,7 @@ export function entriesOf({ cells, areas = [], bands = [], curves }: Figure): En
     const there = curve.y.some((y, i) => finite(y) && finite(curve.x[i]));
     entries.push({ label: curve.label + (there ? "" : " (nowhere here)"), sample: curveSample(curve) });
   }
+  if (ordered) entries.push({ label: ordered, sample: sequenceSample });
   for (const band of bands) if (band.label) entries.push({ label: band.label, sample: bandSample(band) });
   return entries.filter((it, i) => entries.findIndex((other) => other.label === it.label) === i);
 }
@@ -38,6 +39,16 @@ function shapeOf(colour: Colour, x: number, y: number, style: Style): Shape {
     d: markPath(colour, x, y, 0.28 * style.text),
     fill: style.colours[colour],
   };
+}
+
+const steps = 8;
+
+/** From the first to the last. */
+function sequenceSample(x: number, y: number, width: number, height: number, style: Style): Shape[] {
+  return Array.from({ length: steps }, (_, i): Shape => {
+    const d = `M${x + (width * i) / steps} ${y + height / 4}h${width / steps}v${height / 2}h${-width / steps}Z`;
+    return { kind: "path", class: "sample ordered", d, fill: style.ordered(i / (steps - 1)) };
+  });
 }
 
 function bandSample({ colour }: FigureBand): Entry["sample"] {
