@@ -139,4 +139,39 @@ export const tests = {
     expect(studio.kerfOrThrow("inspect", "cut.h5").stdout.includes("work N·rad"), "and in the program");
     expectNoComplaints(page);
   },
+
+  async SaysNothingOfAChangeThatThePageMadeItself({ browser, studio }) {
+    const page = await prepare({ browser, studio });
+    await open(page, studio, "cycles");
+    await page.waitForSelector(".cycle_list li");
+    await page.getByRole("button", { name: "Leave out cycle 2", exact: true }).click();
+    const seen = [];
+    await page.exposeFunction("noticed", (text) => seen.push(text));
+    await page.evaluate(() => {
+      const notice = document.querySelector("#notice");
+      new MutationObserver(() => window.noticed(notice.textContent)).observe(notice, {
+        childList: true,
+        characterData: true,
+        subtree: true,
+      });
+    });
+    // The list sees the new file long before the page has read it.
+    await page.route("**/api/recording?**", async (route) => {
+      await new Promise((go) => setTimeout(go, 4000));
+      await route.continue().catch(() => {});
+    });
+    await page.locator(".save_bar button.firm").click();
+    await until("it is saved", async () => (await page.textContent(".save_bar [role=status]")) === "as saved");
+    const worth = page.locator("table.cycles caption");
+    await until("what it is worth follows", async () => /good: (?!.*\b2\b)/.test(await worth.textContent()));
+    await page.unroute("**/api/recording?**");
+    studio.record("later.h5", 4); // so that the list looks once more at all
+    await until("the list has a later file", async () => (await page.textContent("#side")).includes("later"));
+    expect(!seen.some((it) => it.includes("has changed")), `what was said: ${seen}`);
+    await page.click("#tab_time");
+    await page.waitForSelector(".time_plot");
+    studio.kerfOrThrow("segment", "cut.h5");
+    await until("another's change is told", async () => (await page.textContent("#notice")).includes("has changed"));
+    expectNoComplaints(page);
+  },
 };

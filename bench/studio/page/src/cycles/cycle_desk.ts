@@ -35,6 +35,8 @@ export class CycleDesk {
     private readonly context: Context,
     private readonly id: string,
     private readonly changed: () => void,
+    /** As OpenRecording has it. */
+    private readonly writing: () => (written: boolean) => void,
   ) {
     this.latest = new Latest(context.signal);
     context.signal.addEventListener("abort", () => clearTimeout(this.timer));
@@ -188,9 +190,11 @@ export class CycleDesk {
     clearTimeout(this.timer);
     this.isSaving = true;
     this.changed();
+    const end = this.writing();
     try {
       const body = { recording: this.id, version: this.version, uuid: this.uuid, author, ...this.wanted(draft) };
       const saved = await this.context.api.post<CycleView>("/api/cycles/save", body);
+      end(true);
       if (this.context.signal.aborted) return;
       this.isSaving = false;
       if (draft.settings && this.draft === draft) this.begin(saved);
@@ -205,6 +209,7 @@ export class CycleDesk {
       this.context.lookAtFolder();
       this.soon();
     } catch (error) {
+      end(false);
       this.isSaving = false;
       this.fail(error);
     }

@@ -28,6 +28,7 @@ export class CyclesTab {
   private readonly fits: EarlierFits;
   private readonly observer: ResizeObserver;
   private held: Held | null = null;
+  private look: () => Promise<void> = () => Promise.resolve();
 
   constructor(
     root: HTMLElement,
@@ -37,7 +38,15 @@ export class CyclesTab {
     const { about, id } = recording;
     const { api, state } = context;
     this.loop = new CycleLoop(recording.name);
-    this.desk = new CycleDesk(context, id, () => this.show());
+    this.desk = new CycleDesk(
+      context,
+      id,
+      () => this.show(),
+      () => {
+        const end = recording.writing();
+        return (written) => end(written, () => void this.look());
+      },
+    );
     this.time = new RecordingTime(api, context.complain, element("div", {}), (from, to, whole) => {
       state.set({ [stateKeys.from]: whole ? null : from, [stateKeys.to]: whole ? null : to });
       this.handles.place();
@@ -106,11 +115,16 @@ export class CyclesTab {
         element("section", { "aria-label": "What it is worth" }, worth.root),
       ),
     );
-    const { signal } = this.context;
-    this.recording.inspection().then(
-      (found) => signal.aborted || worth.show(found),
-      (error: unknown) => signal.aborted || worth.fail(error),
-    );
+    this.look = async () => {
+      const { signal } = this.context;
+      try {
+        const found = await this.recording.inspection();
+        if (!signal.aborted) worth.show(found);
+      } catch (error) {
+        if (!signal.aborted) worth.fail(error);
+      }
+    };
+    void this.look();
   }
 
   private takeKeys(root: HTMLElement): void {
