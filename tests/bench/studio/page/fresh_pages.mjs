@@ -174,4 +174,27 @@ export const tests = {
     await until("another's change is told", async () => (await page.textContent("#notice")).includes("has changed"));
     expectNoComplaints(page);
   },
+
+  async CountsTheStepsOfAFit({ browser, studio }) {
+    const page = await prepare({ browser, studio });
+    const recording = await studio.id("recordings", "cut.h5");
+    const order = { recording, axis: "theta", models: ["piecewise"], segments: "8", folds: 9 };
+    const { job } = (await studio.api("/api/fit", order)).json;
+    const shares = new Set();
+    await until(
+      "it is done",
+      async () => {
+        const its = (await studio.api("/api/jobs")).json.find((it) => it.job === job);
+        if (its.state === "failed") throw new Error(its.error);
+        shares.add(its.share);
+        return its.state === "done";
+      },
+      120000,
+    );
+    // Of one law there was nothing between its begin and its end, which eleven of twelve steps are.
+    const between = [...shares].filter((it) => it > 0 && it < 11 / 12);
+    expect(between.length > 0, `steps within a law: ${[...shares]}`);
+    for (const it of between) expect(Math.abs(12 * it - Math.round(12 * it)) < 1e-9, `${it} is so many of 12 steps`);
+    await page.close();
+  },
 };
