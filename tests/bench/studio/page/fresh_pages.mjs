@@ -197,4 +197,19 @@ export const tests = {
     for (const it of between) expect(Math.abs(12 * it - Math.round(12 * it)) < 1e-9, `${it} is so many of 12 steps`);
     await page.close();
   },
+
+  async LeadsFromAnEmptyListToTheImport({ browser, studio }) {
+    await studio.serve();
+    const page = await openPage(browser);
+    for (const [place, list] of [
+      ["recordings", "main"],
+      ["scope", "#side"],
+    ]) {
+      await page.goto(studio.page(place));
+      const link = page.locator(`${list} a`, { hasText: "import a file" });
+      await link.click();
+      await until("Import is open", async () => page.url().includes("#/import"));
+    }
+    expectNoComplaints(page);
+  },
 };
