@@ -48,11 +48,9 @@ async function tick(page, ...laws) {
   for (const law of laws) await page.getByLabel(law, { exact: true }).check();
 }
 
-async function pickRecording(page, name) {
-  await page.getByRole("combobox", { name: "Recording" }).selectOption({ label: name });
-  await until("its axes are known", async () =>
-    (await page.getByRole("combobox", { name: "Axis" }).textContent()).includes("theta"),
-  );
+/** The tab of a recording, with its form. */
+async function openTab(page, studio, name, tab) {
+  await go(page, studio, `recording/${await studio.id("recordings", name)}/${tab}`);
 }
 
 /** The choice names an error that stands in a column of that name, and a straight line is there to hold laws against. */
@@ -73,8 +71,7 @@ async function expectNumbersOfTheSentence(page, written) {
 }
 
 async function testFits(page, studio) {
-  await go(page, studio, "fits");
-  await pickRecording(page, "cut.h5");
+  await openTab(page, studio, "cut.h5", "fits");
   await tick(page, "kelvin", "exponential");
   await page.getByRole("button", { name: "Fit", exact: true }).click();
   await result(page, "cut.h5", "cut.fit");
@@ -136,8 +133,7 @@ async function testFeeling(page) {
 }
 
 async function testChart(page, studio) {
-  await go(page, studio, "chart");
-  await pickRecording(page, "short.h5");
+  await openTab(page, studio, "short.h5", "chart");
   await tick(page, "kelvin");
   await page.getByRole("button", { name: "Chart", exact: true }).click();
   await result(page, "short.h5", "short.chart");
