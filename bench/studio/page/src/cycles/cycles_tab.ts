@@ -28,6 +28,7 @@ export class CyclesTab {
   private readonly fits: EarlierFits;
   private readonly observer: ResizeObserver;
   private held: Held | null = null;
+  private splits = false; // the next press on the plots splits a cycle
 
   constructor(
     root: HTMLElement,
@@ -60,6 +61,12 @@ export class CyclesTab {
     this.settings = new CycleSettings(about.axes, (settings, axis) => this.desk.find(settings, axis));
     this.table = new CycleTable({
       choose: (cycle) => this.choose(cycle),
+      split: () => {
+        this.splits = !this.splits;
+        this.context.say(this.splits ? "Press in the plots where the cycle is to be split." : "");
+        this.show();
+      },
+      merge: () => void this.desk.merge(),
       remark: (cycle, remark) => this.desk.remark(cycle, remark),
     });
     this.bar = new SaveBar(this.desk);
@@ -68,7 +75,7 @@ export class CyclesTab {
     this.lay(root, plots);
     this.observer = new ResizeObserver(() => this.handles.place());
     this.observer.observe(plots);
-    plots.addEventListener("click", () => this.chooseAtCursor());
+    plots.addEventListener("click", () => (this.splits ? this.splitAtCursor() : this.chooseAtCursor()));
     this.takeKeys(root);
     this.time.show([{ recording: about, name: recording.name, shift_s: 0 }], tracesOf(about));
     this.follow();
@@ -117,6 +124,8 @@ export class CyclesTab {
     this.context.offer(
       { title: "Undo", group: "Cycles", run: () => this.desk.undo() },
       { title: "Redo", group: "Cycles", run: () => this.desk.redo() },
+      { title: "Split the cycle at the cursor", group: "Cycles", keys: "s", run: () => this.splitAtCursor() },
+      { title: "Merge the cycle with the next", group: "Cycles", keys: "m", run: () => void this.desk.merge() },
     );
     root.addEventListener("keydown", (event) => {
       if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z") return;
@@ -160,6 +169,14 @@ export class CyclesTab {
     this.show();
   }
 
+  private splitAtCursor(): void {
+    const at = this.time.stack.range.cursor;
+    this.splits = false;
+    if (at === null) this.context.say("Put the cursor where the cycle is to be split: the pointer, or the arrow keys.");
+    else void this.desk.splitAt(at);
+    this.show();
+  }
+
   private show(): void {
     const { view, draft, loop } = this.desk;
     this.bar.show();
@@ -168,6 +185,8 @@ export class CyclesTab {
     const { about } = this.recording;
     this.settings.show(draft.settings ?? view.settings, view.axis, locked);
     this.table.show(view, draft, loop, locked);
+    this.table.offer(!locked && draft.phases.length > 0, this.splits, !locked && this.desk.canMerge);
+    this.time.root.classList.toggle("splits", this.splits);
     this.handles.show(draft, loop, view.rows, about.period_s, locked);
     this.empty.hidden = view.why_none === "";
     this.empty.textContent = view.why_none;
