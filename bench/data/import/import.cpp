@@ -17,6 +17,7 @@
 #include "import/irregular_lines.h"
 #include "import/mapped_rows.h"
 #include "import/resample.h"
+#include "import/suggest/suggested_map.h"
 #include "import/text_table.h"
 #include "import/trials.h"
 #include "import/unit_doubts.h"
@@ -318,7 +319,7 @@ std::string explain_columns(const std::filesystem::path& file, const ImportOptio
   const FileText mapped(file, {.max_bytes = options.max_bytes, .sheet = options.sheet});
   const TextLayout layout = find_layout(mapped.text(), mapped.name());
   return fmt::format("its columns are\n{}\nfor example {}", describe_columns(layout, mapped.text()),
-                     suggest_map(layout));
+                     suggest_map(layout, mapped.text()));
 }
 
 }  // namespace kerf::bench
