@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "fitting/coverage.h"
+#include "fitting/uncertainty/coverage.h"
 #include "uncertainty/uncertainty.h"
 
 // How often intervals of 95 % hold what they should, over simulated recordings: laws that are the tissue's

@@ -27,6 +27,12 @@ std::vector<const FitResult*> eligible(std::span<const FitResult> results, Measu
   return laws;
 }
 
+/// By which of its errors a law is judged, in the words of the tables that have a column for each.
+const char* held_out_in_words(const FitResult& law, const FitOptions& options) {
+  const double rendered = options.folds > 0 ? law.rendered.cv_rmse : law.rendered.test_rmse;
+  return std::isnan(rendered) ? "held-out data" : "held-out data as rendered";
+}
+
 Choice least_bic(std::span<const FitResult> results) {
   const auto laws = eligible(results, [](const FitResult& law) { return law.bic; });
   if (laws.empty()) return no_choice;
@@ -82,14 +88,14 @@ Choice choose_simplest(std::span<const FitResult> results, const Series& series,
   why << std::setprecision(3);
   if (felt) {
     why << "no law stays within the JND of " << limit << unit << " (at the root mean square force of "
-        << force_rms << unit << ") on held-out data; " << chosen->model << " with " << error(*chosen) << unit
-        << " has the fewest parameters (" << chosen->free_parameters
+        << force_rms << unit << ") on " << held_out_in_words(*chosen, options) << "; " << chosen->model
+        << " with " << error(*chosen) << unit << " has the fewest parameters (" << chosen->free_parameters
         << ") of those that do as well as the best, " << best->model << " with " << error(*best) << unit;
   } else {
     why << chosen->model << " has the fewest parameters (" << chosen->free_parameters
-        << ") of the laws whose error on held-out data (" << error(*chosen) << unit
-        << ") stays within the JND of " << limit << unit << " (at the root mean square force of " << force_rms
-        << unit << ")";
+        << ") of the laws whose error on " << held_out_in_words(*chosen, options) << " (" << error(*chosen)
+        << unit << ") stays within the JND of " << limit << unit << " (at the root mean square force of "
+        << force_rms << unit << ")";
   }
   return {.model = chosen->model, .why = why.str()};
 }

@@ -36,6 +36,10 @@ auto in_test(const Samples& samples) {
   return [&](std::size_t i) { return samples.fold[i] == Samples::test && samples.counts[i] != 0; };
 }
 
+void tell_a_part(const FitOptions& options) {
+  if (options.part_done) options.part_done();
+}
+
 void measure_errors(FitResult& result, const std::vector<double>& residuals, const Samples& samples,
                     const Jnd& jnd) {
   double n = 0.0, squares = 0.0, sum = 0.0, sum_of_squares = 0.0, felt = 0.0, most = 0.0;
@@ -120,9 +124,12 @@ void cross_validate(FitResult& result, const FitOptions& options, const Samples&
   if (samples.folds < 2) return;
   FitOptions alone(options);
   alone.threads = 1;  // the folds are shared out already
-  const HeldOut errors = held_out(
-      [&](const Weights& seen) { return train(result.model, alone, samples, seen, of_a_fold, &memory); },
-      samples, all_of(samples), options.threads, options.render);
+  const auto train_on = [&](const Weights& seen) {
+    Trained law = train(result.model, alone, samples, seen, of_a_fold, &memory);
+    tell_a_part(options);
+    return law;
+  };
+  const HeldOut errors = held_out(train_on, samples, all_of(samples), options.threads, options.render);
   result.cv_rmse = errors.fitted.rmse;
   result.cv_std_error = standard_error(errors.fitted);
   result.cv_folds = errors.fitted.folds;
@@ -158,8 +165,10 @@ FitResult fit_samples(std::string_view model, const Samples& samples, const FitO
   }
   result.converged = law.solution.converged;
   result.iterations = law.solution.iterations;
+  tell_a_part(options);
   measure(result, law, samples, options);
   estimate_parameters(result, law.problem, samples, law.weights, law.solution, options, law.loss);
+  tell_a_part(options);
   if (!result.converged && result.undetermined_arms > 0) {  // a valley without an end, and all of it as good
     result.converged = true;
     result.message = "the sum of squares stands still along an arm that is not determined";
@@ -170,6 +179,8 @@ FitResult fit_samples(std::string_view model, const Samples& samples, const FitO
 }
 
 }  // namespace
+
+std::size_t parts_of_a_fit(const FitOptions& options) noexcept { return 2 + options.folds; }
 
 void FitResult::weigh_information(double independent_samples) {
   effective_samples = independent_samples;

@@ -15,6 +15,7 @@ Exit status: ctest's own; 1 if ctest passed and a skip was a failure.
 import fnmatch
 import os
 import re
+import signal
 import subprocess
 import sys
 import tempfile
@@ -183,6 +184,16 @@ def closing_lines(outcome: Outcome, allowances: list[Allowance], skip_is_failure
     return lines, not refused
 
 
+def run_without_terminal(command: list[str]) -> int:
+    """Runs it in a session of its own: a program that would ask a person at the terminal is told that there is none."""
+    with subprocess.Popen(command, start_new_session=True) as process:
+        try:
+            return process.wait()
+        except KeyboardInterrupt:
+            os.killpg(process.pid, signal.SIGINT)
+            raise
+
+
 def main(arguments: list[str]) -> int:
     totals = None
     if arguments[:1] == ["--totals"]:
@@ -196,9 +207,8 @@ def main(arguments: list[str]) -> int:
     with tempfile.TemporaryDirectory() as folder:
         junit = Path(folder) / "junit.xml"
         # Of a passed test ctest keeps 1 KiB, and the skips within it may stand behind that.
-        status = subprocess.run(
-            ["ctest", "--no-tests=error", "--test-output-size-passed", "10000000", "--output-junit", str(junit), *arguments],
-            check=False).returncode
+        status = run_without_terminal(
+            ["ctest", "--no-tests=error", "--test-output-size-passed", "10000000", "--output-junit", str(junit), *arguments])
         if not junit.exists():  # `ctest --show-only` and the like
             return status
         outcome = outcome_of(junit.read_text())

@@ -40,7 +40,9 @@ void append(RecordingWriter& writer, std::uint64_t begin, std::uint64_t end) {
 }
 
 TEST_F(H5py, SeesNamesShapesTypesUnitsAndScales) {
-  write_recording(folder_ / "r.h5", test::sample_recording(5));
+  Recording recording = test::sample_recording(5);
+  recording.cycle_edits = test::sample_cycle_changes();
+  write_recording(folder_ / "r.h5", recording);
   const auto outcome = test::run({python, script, "layout", (folder_ / "r.h5").string()});
   EXPECT_EQ(outcome.exit_status, 0) << outcome.errors;
 }

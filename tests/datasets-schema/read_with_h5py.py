@@ -85,12 +85,25 @@ def check_tables(file):
     equal(float(file["cycles"].attrs["closing_direction"]), -1.0)
 
 
+def check_edits(changes):
+    names = ("edit", "cycle", "phase", "row_before", "row_after", "time", "author", "kind", "text")
+    equal(changes.dtype.names, names)
+    equal([changes.dtype[name].str for name in names[:5]], ["<u4", "<u4", "|u1", "<i8", "<i8"])
+    equal(changes.attrs["units"], "1")
+    equal([int(it) for it in changes["edit"]], [1, 1, 2])
+    equal([int(it) for it in changes["row_after"]], [2, -1, 3])
+    equal([it.decode() for it in changes["author"]], ["Anna Ω", "Anna Ω", "Bo"])
+    equal([it.decode() for it in changes["kind"]], ["begin", "left_out", "split"])
+    equal(changes[2]["time"].decode(), "2026-02-02T09:00:00Z")
+
+
 def check_layout(path):
     with h5py.File(path, "r") as file:
         check_root(file)
         check_samples(file["samples"], 5)
         check_scales(file)
         check_tables(file)
+        check_edits(file["cycle_edits/changes"])
         np.testing.assert_array_equal(file["samples/tick"][:], [0, 1, 2, 10, 11])
         # numpy has a sine of its own, which may round otherwise
         np.testing.assert_allclose(file["samples/position"][:, 1], np.sin(3.0 * np.arange(5.0)), rtol=1e-15)

@@ -207,6 +207,32 @@ TEST(Validate, TakesARecordingOfAVersionThatKnewFewerFlags) {
       << "no version knew as few as that";
 }
 
+TEST(Validate, NamesEditsOfCyclesThatDoNotHoldTogether) {
+  const auto after = [](const std::function<void(std::vector<CycleChange>&)>& spoil) {
+    auto recording = test::sample_recording();
+    recording.cycle_edits = test::sample_cycle_changes();
+    spoil(recording.cycle_edits);
+    return violations_of(recording);
+  };
+  const auto changes = [](const char* found, const char* expected) {
+    return ElementsAre(violation("/cycle_edits/changes", found, expected));
+  };
+  EXPECT_THAT(after([](auto&) {}), IsEmpty());
+  EXPECT_THAT(after([](auto& it) { it[1].kind = "guessed"; }), changes("kind 'guessed' in row 1", "a kind"));
+  EXPECT_THAT(after([](auto& it) { it[2].time = "today"; }), changes("time 'today' in row 2", "ISO 8601"));
+  EXPECT_THAT(after([](auto& it) { it[2].author.clear(); }), changes("no author in row 2", "an author"));
+  EXPECT_THAT(after([](auto& it) { it[0].phase = 5; }), changes("phase 5 in row 0", "from 1 to 4, or 0"));
+  EXPECT_THAT(after([](auto& it) { it[0].row_after = -2; }),
+              changes("a row below -1 in row 0", "rows, or -1"));
+  EXPECT_THAT(after([](auto& it) { it[2].edit = 4; }), changes("edit 4 in row 2", "counted from 1"));
+  EXPECT_THAT(after([](auto& it) { it[1].author = "Bo"; }), changes("edit 1 in row 1", "one author"));
+  EXPECT_THAT(violations_after([](hid_t file) {
+                ASSERT_GE(H5Gclose(H5Gcreate2(file, "cycle_edits", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT)),
+                          0);
+              }),
+              ElementsAre(violation("/cycle_edits/changes", "nothing", "a dataset of {edit uint32")));
+}
+
 TEST(Validate, NamesTimesThatDoNotIncrease) {
   auto recording = test::sample_recording();
   recording.time = {0.0, 0.002, 0.002, 0.001, 0.004};

@@ -113,22 +113,13 @@ TEST(Fracture, IsFoundByTheDepthWhereTheTissueYields) {
   EXPECT_THAT(result.warnings, testing::Contains(testing::HasSubstr("'width' is held")));
 }
 
-TEST(Fracture, CutsWithTheMeanForceBeyondTheDepthOfYieldingHoweverSoonThePushEnds) {
+TEST(Fracture, CutsWithTheForceOfTheRowsThatAreCutHoweverSoonThePushEnds) {
   const double energy = 0.05 * 0.1 / 40.0 * std::expm1(40.0 * 0.006 / 0.1);
   const Push push(Law::make("fracture", std::vector{0.05, 40.0, energy, 150.0, 0.01}), 0.0062);
   const auto result = fit("fracture", push.series(), {.folds = 0});
   ASSERT_EQ(result.parameters.size(), 5U);
   const auto value = [&](std::size_t parameter) { return result.parameters[parameter].value; };
-  const double depth_m = 0.1 / value(1) * std::log1p(value(2) * value(1) / (value(0) * 0.1));
-  double sum = 0.0;
-  double count = 0.0;
-  for (std::size_t i = 0; i < push.force.size(); ++i) {
-    if (push.penetration[i] <= depth_m) continue;
-    sum += push.force[i];
-    count += 1.0;
-  }
-  ASSERT_NEAR(count, 100.0, 5.0);
-  EXPECT_NEAR(value(3) * value(4), sum / count, 1e-9);
+  EXPECT_NEAR(value(3) * value(4), 1.5, 1e-6) << "not less for the tick of the fracture, whose force is none";
 }
 
 TEST(FuzzyKelvin, IsFoundFromItsRuptures) {

@@ -206,7 +206,11 @@ TEST(Fit, IsJudgedAsItIsRendered) {
   EXPECT_EQ(result.held_out_rmse(), result.rendered.cv_rmse);
   const std::vector results{result};
   EXPECT_THAT(choose_simplest(results, strokes.series(true), options).why,
-              HasSubstr("(0.5 N) stays within the JND"));
+              HasSubstr("error on held-out data as rendered (0.5 N) stays within the JND"))
+      << "the sentence names the number that the column of that name has";
+  const FitResult fitted = fit("kelvin", strokes.series(true));
+  EXPECT_THAT(choose_simplest(std::vector{fitted}, strokes.series(true), {}).why,
+              HasSubstr("error on held-out data ("));
 }
 
 }  // namespace

@@ -8,8 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "fitting/coverage.h"
 #include "fitting/strokes.h"
+#include "fitting/uncertainty/coverage.h"
 
 namespace kerf::fitting {
 namespace {

@@ -15,8 +15,8 @@
 
 #include "files/named_file.h"
 #include "import/column_map.h"
-#include "import/text_layout.h"
-#include "import/text_table.h"
+#include "import/text/text_layout.h"
+#include "import/text/text_table.h"
 #include "inspect/signal_facts.h"
 #include "recordings/whole_recording.h"
 #include "signal/blocked_values.h"

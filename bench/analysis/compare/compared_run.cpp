@@ -13,8 +13,8 @@
 
 #include "files/named_file.h"
 #include "formats/file_text.h"
-#include "import/text_layout.h"
-#include "import/text_table.h"
+#include "import/text/text_layout.h"
+#include "import/text/text_table.h"
 #include "laws/placement.h"
 #include "recordings/whole_recording.h"
 #include "units/units.h"

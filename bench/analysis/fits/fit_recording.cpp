@@ -101,18 +101,25 @@ FittedLaw finished(fitting::FitResult result, const Sources& sources) {
   return fitted;
 }
 
-/// Counts one more at the end of its scope.
-class CountWhenLeft {
+/// How far the fit of one law is, beside those before it; at the end of its scope all of it is done.
+class LawProgress {
  public:
-  explicit CountWhenLeft(std::atomic<std::size_t>* count) : count_(count) {}
-  CountWhenLeft(const CountWhenLeft&) = delete;
-  CountWhenLeft& operator=(const CountWhenLeft&) = delete;
-  ~CountWhenLeft() {
-    if (count_ != nullptr) ++*count_;
+  LawProgress(std::atomic<std::size_t>* done, std::size_t law, std::size_t parts)
+      : done_(done), before_(law * parts), parts_(parts) {}
+  LawProgress(const LawProgress&) = delete;
+  LawProgress& operator=(const LawProgress&) = delete;
+  ~LawProgress() {
+    if (done_ != nullptr) *done_ = before_ + parts_;
+  }
+  /// By whichever thread.
+  void part_done() {
+    if (done_ != nullptr) ++*done_;
   }
 
  private:
-  std::atomic<std::size_t>* count_;
+  std::atomic<std::size_t>* done_;
+  std::size_t before_;
+  std::size_t parts_;
 };
 
 bool fits_axis(const std::string& model, const schema::Axis& axis) {
@@ -282,6 +289,10 @@ std::vector<std::string> models_of(const FitRecordingOptions& options) {
   return models;
 }
 
+std::size_t steps_of(const FitRecordingOptions& options) {
+  return models_of(options).size() * fitting::parts_of_a_fit(options.fit) + 1;
+}
+
 RecordingFit fit_recordings(std::span<const FitSource> all, const FitRecordingOptions& options) {
   if (all.empty()) throw std::invalid_argument("there is no recording to fit");
   check_same_units(all);
@@ -290,6 +301,7 @@ RecordingFit fit_recordings(std::span<const FitSource> all, const FitRecordingOp
   check_law_options(models, options.law_options);
   const schema::Axis& axis = all[0].recording->axes[all[0].axis];
   RecordingFit fit{.recordings = {}, .choice = {}, .settings = options.fit};
+  fit.settings.part_done = {};  // what it calls need not outlive the fit
   fit.rows = options.rows;
   fit.loop_rate_hz = options.loop_rate_hz;
   fit.settings.force_unit = axis.force_unit;
@@ -300,10 +312,11 @@ RecordingFit fit_recordings(std::span<const FitSource> all, const FitRecordingOp
   };
   std::optional<fitting::CheckedRecordings> checked;
   std::future<fitting::Floor> floor;
-  for (const std::string& model : models) {
+  for (std::size_t k = 0; k < models.size(); ++k) {
+    const std::string& model = models[k];
     if (options.stop != nullptr && *options.stop)
       throw std::system_error(std::make_error_code(std::errc::interrupted), "not all laws were fitted");
-    const CountWhenLeft counted(options.done);
+    LawProgress progress(options.done, k, fitting::parts_of_a_fit(options.fit));
     if (!named(model) && !fits_axis(model, axis)) continue;
     try {
       check_units(model, axis);
@@ -313,8 +326,12 @@ RecordingFit fit_recordings(std::span<const FitSource> all, const FitRecordingOp
         floor = std::async(beside ? std::launch::async : std::launch::deferred,
                            [&checked] { return fitting::floor_of(*checked); });
       }
-      fitting::FitResult result =
-          fitting::fit(model, *checked, options_for(model, options, fit.settings, sources));
+      fitting::FitOptions of_law = options_for(model, options, fit.settings, sources);
+      of_law.part_done = [&] {
+        progress.part_done();
+        if (options.fit.part_done) options.fit.part_done();
+      };
+      fitting::FitResult result = fitting::fit(model, *checked, of_law);
       if (result.parameters.empty()) throw std::invalid_argument(result.message);
       fit.laws.push_back(finished(std::move(result), sources));
     } catch (const std::invalid_argument& error) {
@@ -330,6 +347,7 @@ RecordingFit fit_recordings(std::span<const FitSource> all, const FitRecordingOp
     for (const FittedLaw& law : fit.laws) fit.floor->lower_to(law.result.cv_rmse);
   }
   fit.choice = fitting::choose_simplest(weighed_alike(fit.laws), pool, fit.settings);
+  if (options.done != nullptr) *options.done = steps_of(options);
   return fit;
 }
 

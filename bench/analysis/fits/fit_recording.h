@@ -30,7 +30,7 @@ struct FitRecordingOptions {
   bool floor = true;                       ///< also what is possible at all
   fitting::FitOptions fit;
   const std::atomic<bool>* stop = nullptr;   ///< no further law is begun then
-  std::atomic<std::size_t>* done = nullptr;  ///< counts the laws of models_of()
+  std::atomic<std::size_t>* done = nullptr;  ///< counts to steps_of()
 };
 
 /// A recording with what a fit has to know of it.
@@ -114,5 +114,8 @@ struct RecordingFit {
 
 /// The laws that are asked for, each once: those named, every scalar law for "all", or the usual ones.
 [[nodiscard]] std::vector<std::string> models_of(const FitRecordingOptions& options);
+
+/// The parts of the fits of models_of(), and what is found of all of them together, such as the floor.
+[[nodiscard]] std::size_t steps_of(const FitRecordingOptions& options);
 
 }  // namespace kerf::bench

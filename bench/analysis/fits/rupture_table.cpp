@@ -8,8 +8,8 @@
 #include <fmt/core.h>
 
 #include "files/named_file.h"
-#include "import/text_layout.h"
-#include "import/text_table.h"
+#include "import/text/text_layout.h"
+#include "import/text/text_table.h"
 #include "units/units.h"
 
 namespace kerf::bench {

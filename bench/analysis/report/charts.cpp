@@ -79,16 +79,16 @@ struct DrawnPhases {
   }
 };
 
+/// Closing is blue and opening orange, in the studio's page as here (docs/glossary.md).
 Colour colour_of(schema::Phase phase) {
   switch (phase) {
     case schema::Phase::opening:
-      return Colour::sky;
-    case schema::Phase::open_to_close:
-      return Colour::grey;
+      return Colour::orange;
     case schema::Phase::closing:
-      return Colour::vermillion;
+      return Colour::blue;
+    case schema::Phase::open_to_close:
     case schema::Phase::close_to_open:
-      return Colour::yellow;
+      return Colour::grey;
   }
   return Colour::grey;
 }
@@ -133,7 +133,7 @@ Chart position_chart(const schema::Recording& about, const schema::RecordedRows&
   const BlockedValues position = axis_values(rows, Column::position, axis);
   align_times(chart, time_s);
   if (about.cycles && about.cycles->axis == axis) {
-    chart.title = "Position over time: closing (red), turning to open (yellow), opening (blue)";
+    chart.title = "Position over time: closing (blue), turning to open (grey), opening (orange)";
     chart.bands = phase_bands(phases_within(*about.cycles, rows.rows()), time_s);
     if (chart.bands.size() > static_cast<std::size_t>(chart.width_px)) {
       chart.title =
@@ -187,17 +187,17 @@ Chart loop_chart(const schema::Recording& about, const schema::RecordedRows& row
     curve.colour = colour;
     curve.width = 0.8;
   };
-  add_phase(schema::Phase::opening, "opening", Colour::sky);
-  add_phase(schema::Phase::closing, "closing", Colour::orange);
+  add_phase(schema::Phase::opening, "opening", Colour::orange);
+  add_phase(schema::Phase::closing, "closing", Colour::sky);
   std::vector<double> grid;
   for (const double at : cycles.grid) grid.push_back(unit.factor * at);
-  chart.curves.push_back(
-      {.label = "opening, mean", .x = grid, .y = cycles.opening_mean, .colour = Colour::blue, .width = 3.0});
-  chart.curves.push_back({.label = "closing, mean",
+  chart.curves.push_back({.label = "opening, mean",
                           .x = grid,
-                          .y = cycles.closing_mean,
+                          .y = cycles.opening_mean,
                           .colour = Colour::vermillion,
                           .width = 3.0});
+  chart.curves.push_back(
+      {.label = "closing, mean", .x = grid, .y = cycles.closing_mean, .colour = Colour::blue, .width = 3.0});
   return chart;
 }
 

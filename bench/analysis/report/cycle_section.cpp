@@ -13,6 +13,7 @@
 #include "html/html.h"
 #include "inspect/flagged_cycles.h"
 #include "report/charts.h"
+#include "units/units.h"
 
 namespace kerf::bench {
 namespace {
@@ -80,14 +81,14 @@ CellRow cells_of(const CycleRemarks& cycle) {
           cycle.reasons};
 }
 
-std::string cycle_tables(const std::vector<CycleRemarks>& cycles, const std::string& force_unit) {
+std::string cycle_tables(const std::vector<CycleRemarks>& cycles, const schema::Axis& axis) {
   const CellRow head{"cycle",
                      "begin [s]",
                      "closing [s]",
                      "hold [s]",
                      "opening [s]",
-                     fmt::format("peak [{}]", force_unit),
-                     "closing work [J]",
+                     fmt::format("peak [{}]", axis.force_unit),
+                     fmt::format("closing work [{}]", work_unit(axis.force_unit, axis.position_unit)),
                      "counts",
                      "flags",
                      "why"};
@@ -107,7 +108,7 @@ std::string cycle_tables(const std::vector<CycleRemarks>& cycles, const std::str
 Chart flagged_chart(const std::vector<CycleRemarks>& cycles, const schema::RecordedRows& rows,
                     std::size_t axis) {
   Chart chart = force_chart(rows.about(), rows, axis);
-  chart.title = "Force over time, cycles that do not count in orange";
+  chart.title = "Force over time, cycles that do not count in red";
   double highest = -std::numeric_limits<double>::infinity();
   for (const Curve& curve : chart.curves) {
     for (const double y : curve.y) highest = std::max(highest, y);
@@ -119,7 +120,7 @@ Chart flagged_chart(const std::vector<CycleRemarks>& cycles, const schema::Recor
     const CycleFacts& begin = cycles[first].facts;
     const CycleFacts& last = cycles[i - 1].facts;
     chart.bands.push_back(
-        {.begin = begin.begin_s, .end = last.begin_s + last.duration_s, .colour = Colour::orange});
+        {.begin = begin.begin_s, .end = last.begin_s + last.duration_s, .colour = Colour::vermillion});
     chart.labels.push_back({.x = begin.begin_s,
                             .y = highest,
                             .text = begin.number == last.number
@@ -147,7 +148,7 @@ std::string section_of_cycles(const schema::RecordedRows& rows, std::size_t axis
                                  good, cycles.size());
   html += "<p class=\"soft\">" + who_said_so(about.cycle_flags, force_unit) + "</p>\n";
   if (good < cycles.size()) html += html_figure(draw(flagged_chart(cycles, rows, axis)));
-  return html + cycle_tables(cycles, force_unit);
+  return html + cycle_tables(cycles, about.axes[axis]);
 }
 
 }  // namespace

@@ -68,7 +68,7 @@ std::vector<double> part(const std::vector<double>& values, const Window& window
 }
 
 Chart over_time(const FitView& view, const Window& window) {
-  Chart chart{.title = "The laws over the recorded force",
+  Chart chart{.title = "The laws over the recorded force (on grey: rows that no law is judged by)",
               .x_label = "time [s]",
               .y_label = "resisting force [" + view.force_unit + "]",
               .height_px = 420};
@@ -83,6 +83,8 @@ Chart over_time(const FitView& view, const Window& window) {
   add("recorded", view.series.force, Colour::grey, 3.0);
   for (std::size_t i = view.shown; i-- > 0;)
     add(view.traces[i].model, view.traces[i].force, view.traces[i].colour, 1.4);
+  chart.bands =
+      bands_not_judged(view.series, view.series.time_s[window.begin], view.series.time_s[window.end - 1]);
   return chart;
 }
 
@@ -134,9 +136,9 @@ double largest_residual(const FitView& view) {
 std::string residual_part(const FitView& view) {
   const double largest = largest_residual(view);
   std::string html =
-      "<h2>Residuals</h2>\n<p class=\"soft\">Recorded less law, on one scale for these laws. Against "
-      "penetration "
-      "and velocity: samples in grey, their mean in bins with one deviation to each side.</p>\n";
+      "<h2>Residuals</h2>\n<p class=\"soft\">Recorded less law, on one scale for these laws and in the rows "
+      "that they are judged by; the others are grey. Against penetration and velocity: samples in grey, "
+      "their mean in bins with one deviation to each side.</p>\n";
   for (std::size_t i = 0; i < view.shown; ++i) {
     const FittedTrace& trace = view.traces[i];
     html += "<h3>" + escaped(trace.model) + "</h3>\n" +

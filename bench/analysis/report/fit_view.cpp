@@ -7,6 +7,7 @@
 
 #include <fmt/core.h>
 
+#include "fits/judged_rows.h"
 #include "html/html.h"
 #include "recordings/axis_series.h"
 
@@ -66,14 +67,32 @@ FitView view_of_fits(const schema::Recording& recording, std::size_t axis, const
   view.shown = std::min(max_shown, view.traces.size());
   if (view.traces.empty()) return view;
   view.series = fit_series(recording, axis, view.traces.front().law.contact);
+  mark_judged(view.series, recording, axis, fits);
   for (std::size_t i = 0; i < view.traces.size(); ++i) {
     FittedTrace& trace = view.traces[i];
     trace.colour = i < law_colours.size() ? law_colours[i] : Colour::black;
     trace.force = render(without_rendering_aids(trace.law.law), view.series);
-    for (std::size_t row = 0; row < trace.force.size(); ++row)
+    for (std::size_t row = 0; row < trace.force.size(); ++row) {
+      if (!is_judged(view.series, row)) trace.force[row] = line_break;
       trace.residual.push_back(view.series.force[row] - trace.force[row]);
+    }
   }
   return view;
+}
+
+std::vector<Band> bands_not_judged(const AxisSeries& series, double from_s, double to_s) {
+  constexpr std::size_t told_apart = 300;
+  std::vector<Band> bands;
+  for (std::size_t row = 0; row < series.time_s.size();) {
+    const std::size_t begin = row++;
+    if (is_judged(series, begin)) continue;
+    while (row < series.time_s.size() && !is_judged(series, row)) ++row;
+    const Band band{.begin = std::max(from_s, series.time_s[begin]),
+                    .end = std::min(to_s, series.time_s[std::min(row, series.time_s.size() - 1)]),
+                    .colour = Colour::grey};
+    if (band.begin < band.end) bands.push_back(band);
+  }
+  return bands.size() <= told_apart ? bands : std::vector<Band>();
 }
 
 std::string number_text(const json& value, const char* format) {

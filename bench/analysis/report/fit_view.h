@@ -21,14 +21,14 @@ struct FittedTrace {
   nlohmann::ordered_json fit;  ///< its part of fit.json
   LawFile law;
   Colour colour = Colour::vermillion;
-  std::vector<double> force;     ///< without rendering aids
-  std::vector<double> residual;  ///< recorded less law
+  std::vector<double> force;     ///< without rendering aids; NaN in rows that it is not judged by
+  std::vector<double> residual;  ///< recorded less law, likewise
 };
 
 /// What the charts of a fit are drawn from: the rows that the fit saw, and the laws, the chosen one first and
 /// the others by their error on held-out data.
 struct FitView {
-  AxisSeries series;
+  AxisSeries series;  ///< with the rows marked that the fit was judged by
   std::vector<FittedTrace> traces;
   std::size_t shown = 0;  ///< how many of them are drawn in full, from the front
   DrawnUnit position;
@@ -40,6 +40,9 @@ struct FitView {
 ///         nlohmann::json::exception if the JSON lacks what `kerf fit` writes.
 [[nodiscard]] FitView view_of_fits(const schema::Recording& recording, std::size_t axis,
                                    const nlohmann::ordered_json& fits, const std::filesystem::path& folder);
+
+/// The stretches of rows that no law is judged by, in grey; none where there are more than can be told apart.
+[[nodiscard]] std::vector<Band> bands_not_judged(const AxisSeries& series, double from_s, double to_s);
 
 /// The error by which laws are compared: on held-out data, on the test share, or where there is neither on
 /// all.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <numeric>
 #include <string>
@@ -25,11 +26,19 @@ struct Moments {
   double deviation = 0.0;
 };
 
-Moments moments_of(std::span<const double> values) {
-  const auto n = static_cast<double>(values.size());
-  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
+/// Of the numbers among them: rows that a law is not judged by have none.
+std::vector<double> numbers_in(std::span<const double> values) {
+  std::vector<double> numbers;
+  std::ranges::copy_if(values, std::back_inserter(numbers),
+                       [](double value) { return std::isfinite(value); });
+  return numbers;
+}
+
+Moments moments_of(std::span<const double> numbers) {
+  const auto n = static_cast<double>(numbers.size());
+  const double mean = std::accumulate(numbers.begin(), numbers.end(), 0.0) / n;
   double squares = 0.0;
-  for (const double value : values) squares += (value - mean) * (value - mean);
+  for (const double value : numbers) squares += (value - mean) * (value - mean);
   return {.mean = mean, .deviation = std::sqrt(squares / n)};
 }
 
@@ -73,12 +82,13 @@ Chart scattered(const FitView& view, const FittedTrace& trace, const std::vector
   chart.width_px = half_width_px;
   chart.height_px = half_height_px;
   if (largest > 0.0) chart.y_range = {-largest, largest};
-  std::vector<double> x(values);
-  for (double& value : x) value *= view.position.factor;
+  std::vector<double> x;
+  for (std::size_t row = 0; row < values.size(); ++row)
+    if (std::isfinite(trace.residual[row])) x.push_back(view.position.factor * values[row]);
+  const std::vector<double> y = numbers_in(trace.residual);
   Curve samples =
-      thinned({.x = x, .y = trace.residual, .colour = Colour::grey, .mark = Mark::points, .width = 0.8},
-              samples_drawn);
-  Binned in_bins = binned(x, trace.residual, trace.colour);
+      thinned({.x = x, .y = y, .colour = Colour::grey, .mark = Mark::points, .width = 0.8}, samples_drawn);
+  Binned in_bins = binned(x, y, trace.colour);
   chart.curves.push_back(std::move(samples));
   for (Curve* curve : {&in_bins.above, &in_bins.below, &in_bins.mean}) {
     if (!curve->x.empty()) chart.curves.push_back(std::move(*curve));
@@ -93,7 +103,7 @@ double period_of(const AxisSeries& series) {
 }  // namespace
 
 Chart residual_over_time(const FitView& view, const FittedTrace& trace, double largest) {
-  Chart chart{.title = "Residual over time (recorded less law)",
+  Chart chart{.title = "Residual over time (recorded less law; grey: rows that no law is judged by)",
               .x_label = "time [s]",
               .y_label = "residual [" + view.force_unit + "]",
               .height_px = 240};
@@ -101,6 +111,7 @@ Chart residual_over_time(const FitView& view, const FittedTrace& trace, double l
   if (largest > 0.0) chart.y_range = {-largest, largest};
   chart.curves.push_back(
       decimated({.x = view.series.time_s, .y = trace.residual, .colour = trace.colour, .width = 0.8}, 3000));
+  chart.bands = bands_not_judged(view.series, view.series.time_s.front(), view.series.time_s.back());
   return chart;
 }
 
@@ -119,13 +130,16 @@ Chart residual_over_velocity(const FitView& view, const FittedTrace& trace, doub
 }
 
 std::vector<double> autocorrelation(std::span<const double> values, std::size_t step, std::size_t most) {
-  const Moments moments = moments_of(values);
-  const double squares = moments.deviation * moments.deviation * static_cast<double>(values.size());
+  const std::vector<double> numbers = numbers_in(values);
+  const Moments moments = moments_of(numbers);
+  const double squares = moments.deviation * moments.deviation * static_cast<double>(numbers.size());
   std::vector<double> correlation;
   for (std::size_t lag = 0; lag <= most && lag < values.size(); lag += step) {
     double sum = 0.0;
-    for (std::size_t i = lag; i < values.size(); ++i)
-      sum += (values[i] - moments.mean) * (values[i - lag] - moments.mean);
+    for (std::size_t i = lag; i < values.size(); ++i) {
+      const double product = (values[i] - moments.mean) * (values[i - lag] - moments.mean);
+      if (std::isfinite(product)) sum += product;
+    }
     correlation.push_back(squares > 0.0 ? sum / squares : 0.0);
   }
   return correlation;
@@ -146,7 +160,7 @@ Chart residual_autocorrelation(const FitView& view, const FittedTrace& trace) {
   for (std::size_t i = 0; i < curve.y.size(); ++i)
     curve.x.push_back(static_cast<double>(i * step) * period_of(view.series));
   chart.curves.push_back(std::move(curve));
-  const double band = 1.96 / std::sqrt(static_cast<double>(count));
+  const double band = 1.96 / std::sqrt(static_cast<double>(numbers_in(trace.residual).size()));
   chart.horizontal = {{.at = band, .label = ""}, {.at = -band, .label = ""}};
   return chart;
 }
@@ -157,13 +171,14 @@ Chart residual_histogram(const FitView& view, const FittedTrace& trace) {
               .y_label = "samples in a bin",
               .width_px = half_width_px,
               .height_px = half_height_px};
-  const Moments moments = moments_of(trace.residual);
+  const std::vector<double> numbers = numbers_in(trace.residual);
+  const Moments moments = moments_of(numbers);
   const double reach = deviations_drawn * (moments.deviation > 0.0 ? moments.deviation : 1e-9);
   const double width = 2.0 * reach / static_cast<double>(histogram_bins);
   Curve boxes{
       .x = {}, .y = std::vector<double>(histogram_bins, 0.0), .colour = trace.colour, .mark = Mark::boxes};
   Curve normal{.x = {}, .y = {}, .colour = Colour::black, .width = 1.5};
-  const auto n = static_cast<double>(trace.residual.size());
+  const auto n = static_cast<double>(numbers.size());
   for (std::size_t bin = 0; bin < histogram_bins; ++bin) {
     const double from_mean = -reach + width * (static_cast<double>(bin) + 0.5);
     const double z = reach > 0.0 ? deviations_drawn * from_mean / reach : 0.0;
@@ -172,7 +187,7 @@ Chart residual_histogram(const FitView& view, const FittedTrace& trace) {
     normal.y.push_back(n * deviations_drawn * width / reach * std::exp(-0.5 * z * z) *
                        std::numbers::inv_sqrtpi / std::numbers::sqrt2);
   }
-  for (const double residual : trace.residual) {
+  for (const double residual : numbers) {
     const double place = (residual - moments.mean + reach) / width;
     if (place >= 0.0 && place < static_cast<double>(histogram_bins))
       boxes.y[static_cast<std::size_t>(place)] += 1.0;

@@ -22,7 +22,8 @@ namespace kerf::bench {
 /// Its histogram beside the normal distribution of the same mean and deviation.
 [[nodiscard]] Chart residual_histogram(const FitView& view, const FittedTrace& trace);
 
-/// Autocorrelation at lags of 0, step, 2 step, ... up to `most` samples.
+/// Autocorrelation of the numbers among values, by the pairs of which both are, at lags of 0, step, 2 step,
+/// ... up to `most` samples.
 [[nodiscard]] std::vector<double> autocorrelation(std::span<const double> values, std::size_t step,
                                                   std::size_t most);
 

@@ -23,7 +23,7 @@
 #include "files/kept_pipe.h"
 #include "files/named_file.h"
 #include "import/import.h"
-#include "import/imported_text.h"
+#include "import/text/imported_text.h"
 #include "imports/import_file.h"
 #include "inspect/first_look.h"
 #include "program/app.h"

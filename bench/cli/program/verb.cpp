@@ -93,6 +93,7 @@ template Option Verb::add_option(const std::string&, double&, const std::string&
 template Option Verb::add_option(const std::string&, std::size_t&, const std::string&);
 template Option Verb::add_option(const std::string&, std::vector<std::string>&, const std::string&);
 template Option Verb::add_option(const std::string&, std::vector<double>&, const std::string&);
+template Option Verb::add_option(const std::string&, std::vector<std::size_t>&, const std::string&);
 template Option Verb::add_option(const std::string&, std::optional<double>&, const std::string&);
 
 Option Verb::add_uri(const std::string& name, std::string& variable, const std::string& description) {

@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
@@ -31,6 +33,11 @@ struct SegmentVerbArguments {
   std::string closing;
   std::string charts;
   SegmentOptions options;
+  std::vector<double> splits;
+  std::vector<std::size_t> merges;
+  std::string author;
+
+  [[nodiscard]] bool edits() const { return !splits.empty() || !merges.empty(); }
 };
 
 nlohmann::ordered_json to_json(const schema::Recording& recording, const schema::RecordedRows& rows) {
@@ -107,10 +114,10 @@ std::vector<FlaggedCycle> flag_and_store(schema::Recording& recording, const sch
 
 /// Flags that a person set or took away, and boundaries that a person moved, are of cycles that are no more.
 void warn_of_what_was_said(const schema::Recording& recording, const std::string& name) {
-  if (const std::vector<ToldEdit> edits = edits_of(recording.header); recording.cycles && !edits.empty())
+  if (const std::vector<ToldEdit> edits = edits_of(recording); recording.cycles && !edits.empty())
     warn(fmt::format(
-        "{}: its cycles were edited by {} at {}, which is gone with them; the history keeps what it was",
-        name, edits.back().author, edits.back().time));
+        "{}: its cycles were edited by {} at {}, which is gone with them; the file keeps what it was", name,
+        edits.back().author, edits.back().time));
   if (!recording.cycle_flags) return;
   const auto said = std::ranges::count_if(recording.cycle_flags->flags, [](const schema::CycleFlag& flag) {
     return flag.fault == "by_hand" || flag.fault == "accepted";
@@ -119,7 +126,55 @@ void warn_of_what_was_said(const schema::Recording& recording, const std::string
     warn(fmt::format("{}: what was said by hand of its cycles, {} remarks, is gone with them", name, said));
 }
 
+/// The row at a time, and the cycle that has it.
+CycleStep split_at(const schema::RecordedRows& rows, const std::vector<schema::PhaseSpan>& phases,
+                   double at_s) {
+  const BlockedValues time_s = axis_values(rows, schema::Column::time);
+  for (const schema::PhaseSpan& phase : phases) {
+    if (phase.end > rows.rows() || time_s[phase.end - 1] < at_s) continue;
+    std::uint64_t row = phase.begin;
+    while (row + 1 < phase.end && time_s[row] < at_s) ++row;
+    return {.kind = CycleStep::Kind::split, .cycle = phase.cycle, .row = row};
+  }
+  throw std::invalid_argument(fmt::format("--split: no cycle lies at {:g} s", at_s));
+}
+
+/// Merges first, the last one before the others, so that cycles are counted as they are stored.
+CycleEdit asked_edit(const SegmentVerbArguments& arguments, const schema::RecordedRows& rows) {
+  const schema::Recording& about = rows.about();
+  if (!about.cycles)
+    throw std::invalid_argument(
+        fmt::format("{}: it has no cycles to split or merge; find them first", arguments.recording));
+  CycleEdit edit{.found_by = {}, .phases = about.cycles->phases, .said = said_by_hand(about)};
+  std::vector<std::size_t> merges = arguments.merges;
+  std::ranges::sort(merges, std::greater<>());
+  for (const std::size_t cycle : merges)
+    edit = with_step(rows, std::move(edit),
+                     {.kind = CycleStep::Kind::merge, .cycle = static_cast<std::uint32_t>(cycle), .row = 0});
+  for (const double at_s : arguments.splits) {
+    const CycleStep split = split_at(rows, edit.phases, at_s);
+    edit = with_step(rows, std::move(edit), split);
+  }
+  return edit;
+}
+
+void run_edit(const SegmentVerbArguments& arguments, Context& context) {
+  const std::string author = arguments.author.empty() ? usual_author() : arguments.author;
+  check_author(author);
+  require_output(arguments.recording, true);
+  const schema::RecordingFile rows(arguments.recording);
+  const CycleEdit edit = asked_edit(arguments, rows);
+  const schema::Axis& axis = rows.about().axes.at(rows.about().cycles->axis);
+  const double felt = fitting::jnd_of(axis.force_unit, axis.lever).threshold;
+  const EditedCycles edited = edited_cycles(rows, edit, felt);
+  const schema::Recording recording = with_edit(rows, edit, edited, felt, author);
+  schema::write_recording(arguments.recording, recording, rows, schema::Existing::replace);
+  context.result = to_json(recording, rows);
+  for (const schema::CycleChange& change : changes_by(rows, edit, edited)) context.say(change.text);
+}
+
 void run_segment(const SegmentVerbArguments& arguments, Context& context) {
+  if (arguments.edits()) return run_edit(arguments, context);
   const std::filesystem::path charts = arguments.charts;
   if (!arguments.charts.empty()) require_output(charts / "cycles.svg", true);
   const schema::RecordingFile rows(arguments.recording);
@@ -176,6 +231,13 @@ void add_segment(CLI::App& app, Context& context) {
   verb.add_option("--closing", arguments->closing,
                   "Direction of closing (default: the one that costs more work)")
       .one_of({"increasing", "decreasing"});
+  verb.add_option("--split", arguments->splits,
+                  "Split the cycle at this time there, instead of finding cycles [s]; repeatable")
+      .one_value_each();
+  verb.add_option("--merge", arguments->merges,
+                  "CYCLE: make it and the next one one, instead of finding cycles; repeatable")
+      .one_value_each();
+  verb.add_option("--by", arguments->author, "Who splits and merges, kept in the recording (default: you)");
   verb.add_option("-o,--output", arguments->charts, "Folder for charts: cycles.svg and loops.svg");
 }
 

@@ -17,7 +17,7 @@
 #include "files/whole_folder.h"
 #include "fits/fit_files.h"
 #include "fits/fit_recording.h"
-#include "import/imported_text.h"
+#include "import/text/imported_text.h"
 #include "program/verbs.h"
 #include "report/charts.h"
 #include "report/page.h"

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
@@ -93,20 +94,6 @@ std::string column_list(const TextLayout& layout) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// The kinds of unit that a channel of the schema may have; empty for a channel of one's own.
-std::vector<std::string_view> kinds_of(std::string_view channel) {
-  if (channel == "time") return {"s"};
-  if (channel == "position") return {"m", "rad"};
-  if (channel == "velocity") return {"m/s", "rad/s"};
-  if (is_spatial_part(channel))
-    return channel.starts_with("p")   ? std::vector<std::string_view>{"m"}
-           : channel.starts_with("f") ? std::vector<std::string_view>{"N"}
-                                      : std::vector<std::string_view>{"N·m"};
-  if (is_spatial(channel)) return {"1", "rad"};
-  if (channel == "force" || channel == "force_measured" || channel == "force_commanded") return {"N", "N·m"};
-  return {};
-}
-
 Unit unit_for(const MapEntry& entry, const TextColumn& column, const std::string& name) {
   const std::string& text = entry.unit.empty() ? column.unit : entry.unit;
   if (text.empty()) {
@@ -153,6 +140,29 @@ void check_units_agree(const std::vector<MappedColumn>& columns) {
 }
 
 }  // namespace
+
+std::vector<std::string_view> kinds_of(std::string_view channel) {
+  if (channel == "time") return {"s"};
+  if (channel == "position") return {"m", "rad"};
+  if (channel == "velocity") return {"m/s", "rad/s"};
+  if (is_spatial_part(channel))
+    return channel.starts_with("p")   ? std::vector<std::string_view>{"m"}
+           : channel.starts_with("f") ? std::vector<std::string_view>{"N"}
+                                      : std::vector<std::string_view>{"N·m"};
+  if (is_spatial(channel)) return {"1", "rad"};
+  if (channel == "force" || channel == "force_measured" || channel == "force_commanded") return {"N", "N·m"};
+  return {};
+}
+
+std::vector<std::string> usual_units_of(std::string_view channel) {
+  const auto kinds = kinds_of(channel);
+  if (kinds.empty()) return all_symbols();
+  std::vector<std::string> units;
+  for (const std::string_view kind : kinds) {
+    for (std::string& symbol : symbols_of(kind)) units.push_back(std::move(symbol));
+  }
+  return units;
+}
 
 std::size_t find_column(const MapEntry& entry, const TextLayout& layout, const std::string& name) {
   for (const auto part : {&TextColumn::heading, &TextColumn::name}) {
@@ -221,34 +231,6 @@ std::string describe_columns(const TextLayout& layout, std::string_view text) {
     description += "...";
   }
   return description;
-}
-
-std::string suggest_map(const TextLayout& layout) {
-  const auto has_unit_of = [&](std::size_t i, std::string_view channel) {
-    if (layout.columns[i].unit.empty()) return false;
-    const auto kinds = kinds_of(channel);
-    return std::find(kinds.begin(), kinds.end(), parse_unit(layout.columns[i].unit).si) != kinds.end();
-  };
-  const bool units_known = std::any_of(layout.columns.begin(), layout.columns.end(),
-                                       [](const TextColumn& column) { return !column.unit.empty(); });
-  const std::size_t width = layout.columns.size();
-  std::vector<bool> taken(width, false);
-  std::vector<std::string> entries;
-  const auto suggest = [&](std::string_view channel, std::string_view usual_unit, bool by_place) {
-    std::size_t i = 0;
-    while (i < width && (taken[i] || !has_unit_of(i, channel))) ++i;
-    const bool known = i < width;
-    if (!known && by_place)
-      i = static_cast<std::size_t>(std::find(taken.begin(), taken.end(), false) - taken.begin());
-    if (i == width) return;
-    taken[i] = true;
-    entries.push_back(fmt::format("{}={}[{}]", channel, i + 1, known ? layout.columns[i].unit : usual_unit));
-  };
-  suggest("time", "s", !units_known && width > 2);
-  const bool has_time = !entries.empty();
-  suggest("position", "mm", true);
-  suggest("force", "N", true);
-  return fmt::format("--map '{}'{}", fmt::join(entries, ","), has_time ? "" : " --rate 100");
 }
 
 }  // namespace kerf::bench

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "import/text_layout.h"
+#include "import/text/text_layout.h"
 #include "poses/orientation_form.h"
 #include "units/units.h"
 
@@ -39,6 +39,12 @@ struct MappedColumn {
   bool unit_from_file = false;
 };
 
+/// The kinds of unit, in SI, that a channel of the schema may have; empty for a channel of one's own.
+[[nodiscard]] std::vector<std::string_view> kinds_of(std::string_view channel);
+
+/// Units to choose from for a channel; all there are for one of one's own.
+[[nodiscard]] std::vector<std::string> usual_units_of(std::string_view channel);
+
 /// The place of the column that an entry names, from 0. @throws std::invalid_argument if there is none, or
 /// two have its name.
 [[nodiscard]] std::size_t find_column(const MapEntry& entry, const TextLayout& layout,
@@ -52,8 +58,5 @@ struct MappedColumn {
 
 /// The columns of a file, one a line: number, heading, unit and first values.
 [[nodiscard]] std::string describe_columns(const TextLayout& layout, std::string_view text);
-
-/// A map to begin with, for this very file: columns are guessed by their units, then by their place.
-[[nodiscard]] std::string suggest_map(const TextLayout& layout);
 
 }  // namespace kerf::bench

@@ -14,10 +14,11 @@
 
 #include "files/memory_room.h"
 #include "formats/file_text.h"
-#include "import/irregular_lines.h"
 #include "import/mapped_rows.h"
 #include "import/resample.h"
-#include "import/text_table.h"
+#include "import/suggest/suggested_map.h"
+#include "import/text/irregular_lines.h"
+#include "import/text/text_table.h"
 #include "import/trials.h"
 #include "import/unit_doubts.h"
 #include "recordings/provenance.h"
@@ -318,7 +319,7 @@ std::string explain_columns(const std::filesystem::path& file, const ImportOptio
   const FileText mapped(file, {.max_bytes = options.max_bytes, .sheet = options.sheet});
   const TextLayout layout = find_layout(mapped.text(), mapped.name());
   return fmt::format("its columns are\n{}\nfor example {}", describe_columns(layout, mapped.text()),
-                     suggest_map(layout));
+                     suggest_map(layout, mapped.text()));
 }
 
 }  // namespace kerf::bench

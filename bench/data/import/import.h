@@ -14,7 +14,7 @@
 #include "import/column_map.h"
 #include "import/spatial/spatial_axes.h"
 #include "import/spatial/spatial_columns.h"
-#include "import/text_layout.h"
+#include "import/text/text_layout.h"
 
 namespace kerf::bench {
 

@@ -8,7 +8,7 @@
 #include <fmt/core.h>
 
 #include "files/file_names.h"
-#include "import/imported_text.h"
+#include "import/text/imported_text.h"
 
 namespace kerf::bench {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "import/column_map.h"
-#include "import/text_table.h"
+#include "import/text/text_table.h"
 
 namespace kerf::bench {
 

@@ -15,6 +15,7 @@
 #include "formats/utf16.h"
 #include "formats/workbook.h"
 #include "formats/xls.h"
+#include "import/suggest/suggested_map.h"
 
 namespace kerf::bench {
 namespace {
@@ -167,7 +168,7 @@ ImportPreview preview_import(const std::filesystem::path& head, const std::strin
                         .irregular = {},
                         .imported = {},
                         .problem = {}};
-  const std::string words = suggest_map(preview.layout);  // --map 'MAP', and what else it takes
+  const std::string words = suggest_map(preview.layout, text.text());  // --map 'MAP', and what else it takes
   const std::size_t begin = words.find('\'') + 1;
   preview.suggested = words.substr(begin, words.rfind('\'') - begin);
   preview.suggests_time = words.find(" --rate ") == std::string::npos;

@@ -10,7 +10,7 @@
 #include "formats/file_text.h"
 #include "import/column_map.h"
 #include "import/import.h"
-#include "import/text_layout.h"
+#include "import/text/text_layout.h"
 
 namespace kerf::bench {
 

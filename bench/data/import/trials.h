@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "import/text_table.h"
+#include "import/text/text_table.h"
 
 namespace kerf::bench {
 

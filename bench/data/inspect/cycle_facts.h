@@ -23,8 +23,8 @@ struct CycleFacts {
   double idle_hold_s = 0.0;         ///< of that out of contact
   std::optional<double> opening_s;  ///< none: it does not open again
   double peak = 0.0;                ///< largest force from the begin of the closing on
-  double closing_work = 0.0;        ///< from the begin of the closing to the most closed row [J]
-  double work = 0.0;                ///< from there to the end of the opening, all that was not given back [J]
+  double closing_work = 0.0;        ///< from the begin of the closing to the most closed row [work_unit()]
+  double work = 0.0;                ///< from there to the end of the opening, all that was not given back
   std::uint64_t clipped_rows = 0;   ///< at an end of the sensor's range, if it is clipped there
   std::uint64_t gaps = 0;           ///< where rows are missing
 };

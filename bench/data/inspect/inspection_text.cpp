@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include "files/json_number.h"
+#include "units/units.h"
 
 namespace kerf::bench {
 namespace {
@@ -125,11 +126,20 @@ ordered_json as_json(const FlaggedCycle& cycle) {
           {"flags", flags}};
 }
 
-ordered_json as_json(const InspectedCycles& inspected) {
+std::string work_unit_of(const Inspection& inspection) {
+  return work_unit(inspection.force_unit, inspection.position_unit);
+}
+
+ordered_json cycles_as_json(const Inspection& inspection) {
+  const InspectedCycles& inspected = inspection.cycles;
   if (inspected.cycles.empty()) return nullptr;
   ordered_json list = ordered_json::array();
   for (const FlaggedCycle& cycle : inspected.cycles) list.push_back(as_json(cycle));
-  return {{"stored", inspected.are_stored}, {"good", good_cycles(inspected.cycles)}, {"list", list}};
+  return {{"stored", inspected.are_stored},
+          {"good", good_cycles(inspected.cycles)},
+          {"force_unit", inspection.force_unit},
+          {"work_unit", work_unit_of(inspection)},
+          {"list", list}};
 }
 
 std::string number(const std::optional<double>& value) {
@@ -147,7 +157,8 @@ std::string remarks_on(const FlaggedCycle& cycle) {
              : reasons;
 }
 
-void add_cycle_lines(const InspectedCycles& inspected, std::vector<std::string>& lines) {
+void add_cycle_lines(const Inspection& inspection, std::vector<std::string>& lines) {
+  const InspectedCycles& inspected = inspection.cycles;
   lines.emplace_back();
   if (inspected.cycles.empty()) {
     lines.push_back("cycles      none: " + inspected.why_none);
@@ -157,7 +168,8 @@ void add_cycle_lines(const InspectedCycles& inspected, std::vector<std::string>&
       "cycles      {} {}", inspected.cycles.size(),
       inspected.are_stored ? "that are stored in the recording" : "found now; 'kerf segment' stores them"));
   lines.push_back(fmt::format("{:>5}{:>10}{:>8}{:>9}{:>8}{:>9}{:>10}{:>11}  {}", "cycle", "begin s", "wait",
-                              "closing", "hold", "opening", "peak", "work J", "flags"));
+                              "closing", "hold", "opening", "peak " + inspection.force_unit,
+                              "work " + work_unit_of(inspection), "flags"));
   for (const FlaggedCycle& cycle : inspected.cycles) {
     const CycleFacts& facts = cycle.facts;
     lines.push_back(fmt::format("{:>5}{:>10.3f}{:>8.2f}{:>9.2f}{:>8.2f}{:>9}{:>10}{:>11}  {}", facts.number,
@@ -218,7 +230,7 @@ ordered_json inspection_as_json(const Inspection& inspection) {
           {"signals", signals},
           {"contact", as_json(inspection.contact, inspection.options.felt)},
           {"lag", as_json(inspection.lag)},
-          {"cycles", as_json(inspection.cycles)},
+          {"cycles", cycles_as_json(inspection)},
           {"warnings", warnings_of(inspection)}};
 }
 
@@ -237,7 +249,7 @@ std::vector<std::string> inspection_lines(const Inspection& inspection) {
                                 number(facts.noise), share, clipped(signal.ends),
                                 facts.outliers ? std::to_string(*facts.outliers) : "-", number(drift)));
   }
-  add_cycle_lines(inspection.cycles, lines);
+  add_cycle_lines(inspection, lines);
   return lines;
 }
 

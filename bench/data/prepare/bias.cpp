@@ -9,7 +9,7 @@
 namespace kerf::bench {
 namespace {
 
-constexpr std::size_t fewest_rows = 10;
+constexpr std::size_t fewest_idle_rows = 10;
 
 /// The straight line (or the mean) through one axis' free rows.
 struct Line {
@@ -68,16 +68,16 @@ void check(const schema::Recording& recording, const std::vector<bool>& free, bo
     first += recording.time[row] <= begin_s + quarter_s ? 1 : 0;
     last += recording.time[row] >= recording.time.back() - quarter_s ? 1 : 0;
   }
-  if (all < fewest_rows) {
+  if (all < fewest_idle_rows) {
     throw std::invalid_argument(fmt::format(
         "--bias: {} rows are free of contact, {} are needed; --free A:B says when nothing is touched", all,
-        fewest_rows));
+        fewest_idle_rows));
   }
-  if (drift && (first < fewest_rows || last < fewest_rows)) {
+  if (drift && (first < fewest_idle_rows || last < fewest_idle_rows)) {
     throw std::invalid_argument(fmt::format(
         "--drift: {} free rows in the first quarter of the time and {} in the last, {} are needed in each; "
         "leave out --drift, or record some time without contact at both ends",
-        first, last, fewest_rows));
+        first, last, fewest_idle_rows));
   }
 }
 
@@ -108,7 +108,7 @@ Bias remove_bias(schema::Recording& recording, const std::vector<bool>& free, bo
       t.push_back(recording.time[row] - begin_s);
       f.push_back(force);
     }
-    if (t.size() < fewest_rows) continue;
+    if (t.size() < fewest_idle_rows) continue;
     const Line line = fit_line(t, f, drift);
     for (std::size_t row = 0; row < free.size(); ++row) {
       recording.force_measured[row * axes + axis] -=

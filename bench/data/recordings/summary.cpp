@@ -125,7 +125,7 @@ void add_cycles(nlohmann::ordered_json& summary, const schema::Recording& record
                        {"filter_corner_hz", cycles.filter_corner_hz},
                        {"phases", cycles.phases.size()},
                        {"grid_points", cycles.grid.size()}};
-  for (const ToldEdit& edit : edits_of(recording.header))
+  for (const ToldEdit& edit : edits_of(recording))
     summary["cycles"]["edits"].push_back({{"time", edit.time}, {"author", edit.author}, {"what", edit.what}});
   if (!recording.cycle_flags) return;
   std::set<std::uint32_t> flagged;

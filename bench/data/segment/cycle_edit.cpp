@@ -2,33 +2,25 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <map>
+#include <iterator>
 #include <set>
 #include <stdexcept>
 #include <utility>
 
 #include <fmt/core.h>
+#include <pwd.h>
+#include <unistd.h>
 
 #include "inspect/flagged_cycles.h"
 #include "recordings/axis_values.h"
 #include "recordings/provenance.h"
 #include "segment/branches.h"
+#include "segment/cycle_division.h"
 
 namespace kerf::bench {
 namespace {
 
-constexpr std::string_view edited_by = ": cycles edited by ";
-constexpr std::string_view found_anew = ": segment: ";
 constexpr std::size_t longest_author = 60;
-constexpr std::size_t most_sentences = 60;  // a line of the history stays one that can be read
-
-std::string_view in_words(schema::Phase phase) noexcept {
-  constexpr std::array<std::string_view, 5> names{"", "opening", "the wait before its closing", "closing",
-                                                  "the hold before its opening"};
-  const auto at = static_cast<std::size_t>(phase);
-  return at < names.size() ? names[at] : names[0];
-}
 
 /// Cycles that are asked for, before their rows are changed.
 schema::Cycles unedited(const schema::RecordedRows& rows, const CycleEdit& edit) {
@@ -38,22 +30,50 @@ schema::Cycles unedited(const schema::RecordedRows& rows, const CycleEdit& edit)
   return *rows.about().cycles;
 }
 
+/// The order of phases within a cycle.
+int place_in_cycle(schema::Phase phase) noexcept {
+  constexpr std::array<int, 5> places{0, 4, 1, 2, 3};
+  return places.at(static_cast<std::size_t>(phase));
+}
+
+/// Cycles are counted from 1, and each has a closing and what else belongs to it, in order.
+void check_division(const std::vector<schema::PhaseSpan>& phases) {
+  std::uint32_t cycle = 0;
+  int place = 0;
+  bool has_closing = true;
+  const auto refuse = [](std::uint32_t number) {
+    throw std::invalid_argument(fmt::format(
+        "cycle {} is not made of a wait, a closing, a hold and an opening in this order, of which "
+        "only the closing has to be there; expected cycles counted from 1",
+        number));
+  };
+  for (const schema::PhaseSpan& phase : phases) {
+    if (phase.cycle != cycle) {
+      if (!has_closing || phase.cycle != cycle + 1) refuse(std::max(cycle, std::uint32_t{1}));
+      cycle = phase.cycle;
+      place = 0;
+      has_closing = false;
+    }
+    if (place_in_cycle(phase.phase) <= place) refuse(cycle);
+    place = place_in_cycle(phase.phase);
+    has_closing = has_closing || phase.phase == schema::Phase::closing;
+  }
+  if (!has_closing) refuse(cycle);
+}
+
 void check_phases(const std::vector<schema::PhaseSpan>& phases, const std::vector<schema::PhaseSpan>& known,
                   std::uint64_t rows) {
   const auto are_one = [](const schema::PhaseSpan& a, const schema::PhaseSpan& b) {
     return a.cycle == b.cycle && a.phase == b.phase;
   };
-  if (!std::ranges::equal(phases, known, are_one))
-    throw std::invalid_argument(fmt::format(
-        "{} phases are of other cycles than the {} there are; expected the same phases in the same order",
-        phases.size(), known.size()));
+  if (!std::ranges::equal(phases, known, are_one)) check_division(phases);
   std::uint64_t free_from = 0;
   for (const schema::PhaseSpan& phase : phases) {
     if (phase.begin < free_from || phase.begin >= phase.end || phase.end > rows)
       throw std::invalid_argument(
           fmt::format("cycle {}: {} is of the rows {} to {}; expected one row and more, from row {} on, "
                       "within {}",
-                      phase.cycle, in_words(phase.phase), phase.begin, phase.end, free_from, rows));
+                      phase.cycle, name_of(phase.phase), phase.begin, phase.end, free_from, rows));
     free_from = phase.end;
   }
 }
@@ -73,95 +93,35 @@ void check_said(const std::vector<schema::CycleFlag>& said, const schema::Cycles
   }
 }
 
-/// What a person has said of cycles, as it stands in a recording.
-std::map<std::pair<std::uint32_t, std::string>, std::string> said_in(const schema::Recording& about) {
-  std::map<std::pair<std::uint32_t, std::string>, std::string> said;
-  if (!about.cycle_flags) return said;
-  for (const schema::CycleFlag& flag : about.cycle_flags->flags) {
-    if (flag.fault == "by_hand" || flag.fault == "accepted") said[{flag.cycle, flag.fault}] = flag.reason;
+/// Of cycles as they are counted after a step.
+std::vector<schema::CycleFlag> said_after(const std::vector<schema::CycleFlag>& before,
+                                          const CycleStep& step) {
+  const bool splits = step.kind == CycleStep::Kind::split;
+  std::vector<schema::CycleFlag> said;
+  for (schema::CycleFlag flag : before) {
+    const bool is_split = splits && flag.cycle == step.cycle;
+    const bool is_of_second = !splits && flag.cycle == step.cycle + 1;
+    const auto is_of_first = [&](const schema::CycleFlag& other) { return other.cycle == step.cycle; };
+    if (is_of_second && std::ranges::any_of(before, is_of_first)) continue;
+    if (flag.cycle > step.cycle) flag.cycle = splits ? flag.cycle + 1 : flag.cycle - 1;
+    said.push_back(flag);
+    if (!is_split) continue;
+    ++flag.cycle;
+    said.push_back(std::move(flag));
   }
   return said;
 }
 
-class Changes {
- public:
-  Changes(const schema::RecordedRows& rows, const CycleEdit& edit, const EditedCycles& edited)
-      : edit_(edit),
-        edited_(edited),
-        before_(before(rows, edit)),
-        said_before_(said_in(rows.about())),
-        time_s_(axis_values(rows, schema::Column::time)) {
-    if (edit.found_by) said_before_.clear();
-  }
-
-  std::vector<std::string> in_sentences() {
-    if (edit_.found_by)
-      add(fmt::format("found anew, {} of them, prominence {:g}, zero-phase low-pass {:g} Hz",
-                      edited_.cycles.closing.size(), edit_.found_by->prominence,
-                      edited_.cycles.filter_corner_hz));
-    for (std::size_t i = 0; i < std::min(before_.size(), edited_.cycles.phases.size()); ++i) add_moves(i);
-    add_said();
-    return std::move(sentences_);
-  }
-
- private:
-  static std::vector<schema::PhaseSpan> before(const schema::RecordedRows& rows, const CycleEdit& edit) {
-    if (!edit.found_by) return rows.about().cycles->phases;
-    return edit.phases.empty() ? std::vector<schema::PhaseSpan>() : find_cycles(rows, *edit.found_by).phases;
-  }
-
-  void add(std::string sentence) { sentences_.push_back(std::move(sentence)); }
-
-  void add_moves(std::size_t i) {
-    const schema::PhaseSpan& was = before_[i];
-    const std::vector<schema::PhaseSpan>& phases = edited_.cycles.phases;
-    const schema::PhaseSpan& is = phases[i];
-    if (is.begin != was.begin) add(moved(is, "begins", was.begin, is.begin));
-    const bool follows = i + 1 < phases.size() && phases[i + 1].begin == is.end;
-    if (is.end != was.end && !follows) add(moved(is, "ends", was.end, is.end));
-  }
-
-  std::string moved(const schema::PhaseSpan& phase, std::string_view edge, std::uint64_t from,
-                    std::uint64_t to) {
-    return fmt::format("cycle {}: {} {} at {:.6g} s (row {}) instead of {:.6g} s (row {})", phase.cycle,
-                       in_words(phase.phase), edge, time_of(to), to, time_of(from), from);
-  }
-
-  double time_of(std::uint64_t row) const { return time_s_[std::min(row, time_s_.size() - 1)]; }
-
-  void add_said() {
-    auto gone = said_before_;
-    for (const schema::CycleFlag& one : edit_.said) {
-      const auto known = gone.find({one.cycle, one.fault});
-      const bool is_new = known == gone.end() || known->second != one.reason;
-      if (known != gone.end()) gone.erase(known);
-      if (!is_new) continue;
-      add(fmt::format("cycle {} {}: {}", one.cycle, one.fault == "accepted" ? "taken" : "left out",
-                      one.reason));
-    }
-    for (const auto& [which, reason] : gone)
-      add(fmt::format("cycle {} no longer {}", which.first,
-                      which.second == "accepted" ? "taken by hand" : "left out by hand"));
-  }
-
-  const CycleEdit& edit_;
-  const EditedCycles& edited_;
-  std::vector<schema::PhaseSpan> before_;
-  std::map<std::pair<std::uint32_t, std::string>, std::string> said_before_;
-  BlockedValues time_s_;
-  std::vector<std::string> sentences_;
-};
-
-std::string joined(const std::vector<std::string>& sentences) {
-  std::string text;
-  for (std::size_t i = 0; i < std::min(sentences.size(), most_sentences); ++i)
-    text += (text.empty() ? "" : "; ") + sentences[i];
-  if (sentences.size() > most_sentences)
-    text += fmt::format("; and {} more", sentences.size() - most_sentences);
-  return text.empty() ? "nothing changed" : text;
-}
-
 }  // namespace
+
+std::vector<schema::CycleFlag> said_by_hand(const schema::Recording& about) {
+  std::vector<schema::CycleFlag> said;
+  if (!about.cycle_flags) return said;
+  std::ranges::copy_if(about.cycle_flags->flags, std::back_inserter(said), [](const schema::CycleFlag& flag) {
+    return flag.fault == "by_hand" || flag.fault == "accepted";
+  });
+  return said;
+}
 
 EditedCycles edited_cycles(const schema::RecordedRows& rows, const CycleEdit& edit, double felt) {
   EditedCycles edited{.cycles = unedited(rows, edit), .flagged = {}};
@@ -184,9 +144,47 @@ EditedCycles edited_cycles(const schema::RecordedRows& rows, const CycleEdit& ed
   return edited;
 }
 
-std::vector<std::string> changes_by(const schema::RecordedRows& rows, const CycleEdit& edit,
-                                    const EditedCycles& edited) {
-  return Changes(rows, edit, edited).in_sentences();
+CycleEdit with_step(const schema::RecordedRows& rows, CycleEdit edit, const CycleStep& step) {
+  const schema::Cycles cycles = unedited(rows, edit);
+  if (cycles.axis >= rows.about().dimensions())
+    throw std::invalid_argument("its cycles do not hold together; find them anew");
+  const std::vector<schema::PhaseSpan> phases = edit.phases.empty() ? cycles.phases : edit.phases;
+  check_phases(phases, cycles.phases, rows.rows());
+  AxisMotion motion(rows, cycles.axis, cycles.filter_corner_hz);
+  motion.close_along(cycles.closing_direction);
+  DivisionOptions options;
+  if (edit.found_by) options.dwell = edit.found_by->dwell;
+  edit.phases = step.kind == CycleStep::Kind::split
+                    ? split_cycle(motion, phases, step.cycle, step.row, options)
+                    : merge_cycles(motion, phases, step.cycle, options);
+  edit.said = said_after(edit.said, step);
+  return edit;
+}
+
+std::vector<schema::CycleChange> changes_by(const schema::RecordedRows& rows, const CycleEdit& edit,
+                                            const EditedCycles& edited) {
+  std::vector<schema::CycleChange> changes;
+  SaidCycles before;
+  if (edit.found_by) {
+    changes.push_back(
+        {.time = {},
+         .author = {},
+         .kind = "found",
+         .text = fmt::format("found anew, {} of them, prominence {:g}, zero-phase low-pass {:g} Hz",
+                             edited.cycles.closing.size(), edit.found_by->prominence,
+                             edited.cycles.filter_corner_hz)});
+    before.phases = edit.phases.empty() ? edited.cycles.phases : find_cycles(rows, *edit.found_by).phases;
+  } else {
+    before = {.phases = rows.about().cycles->phases, .said = said_by_hand(rows.about())};
+  }
+  const SaidCycles after{.phases = edited.cycles.phases, .said = edit.said};
+  std::ranges::move(changes_between(rows, before, after), std::back_inserter(changes));
+  return changes;
+}
+
+std::string usual_author() {
+  const passwd* const user = getpwuid(geteuid());
+  return user == nullptr || user->pw_name == nullptr ? "" : user->pw_name;
 }
 
 void check_author(std::string_view author) {
@@ -204,29 +202,8 @@ schema::Recording with_edit(const schema::RecordedRows& rows, const CycleEdit& e
   schema::Recording about = rows.about();
   about.cycles = edited.cycles;
   about.cycle_flags = stored_flags(edited.flagged, felt);
-  add_history(about.header,
-              fmt::format("{}{}: {}", edited_by.substr(2), author, joined(changes_by(rows, edit, edited))));
+  add_edit(about, changes_by(rows, edit, edited), std::string(author));
   return about;
-}
-
-std::vector<ToldEdit> edits_of(const schema::Header& header) {
-  std::vector<ToldEdit> edits;
-  std::string_view rest = header.history;
-  while (!rest.empty()) {
-    const std::string_view line = rest.substr(0, rest.find('\n'));
-    rest.remove_prefix(std::min(rest.size(), line.size() + 1));
-    const std::size_t step = line.find(": ");  // after time and program
-    if (step == std::string_view::npos) continue;
-    const std::string_view said = line.substr(step);
-    if (said.starts_with(found_anew)) edits.clear();
-    if (!said.starts_with(edited_by)) continue;
-    const std::string_view by = said.substr(edited_by.size());
-    const std::size_t end = std::min(by.find(": "), by.size());
-    edits.push_back({.time = std::string(line.substr(0, line.find(' '))),
-                     .author = std::string(by.substr(0, end)),
-                     .what = std::string(by.substr(std::min(end + 2, by.size())))});
-  }
-  return edits;
 }
 
 std::string cycles_sha256_of(const schema::Recording& about) {

@@ -14,19 +14,13 @@
 #include "recordings/axis_values.h"
 #include "recordings/provenance.h"
 #include "segment/branches.h"
+#include "segment/strokes.h"
 #include "signal/quantiles.h"
 
 namespace kerf::bench {
 namespace {
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-
-/// A turning point of the motion.
-struct Turn {
-  std::uint64_t row = 0;
-  double position = 0.0;
-  bool closed = false;  ///< the most closed point between two openings, else the most open one
-};
 
 /// Least and most position.
 std::pair<double, double> range_of(const AxisMotion& motion) {
@@ -61,26 +55,6 @@ std::vector<Turn> find_turns(const AxisMotion& motion, double height) {
   }
   if (direction != 0) turns.push_back(direction > 0 ? highest : lowest);
   return turns;
-}
-
-/// Where a stroke between two turns leaves the first and comes to the second, by `dwell` of its height.
-struct Stroke {
-  std::uint64_t begin = 0;
-  std::uint64_t end = 0;
-};
-
-Stroke stroke_between(const AxisMotion& motion, const Turn& from, const Turn& to, double dwell) {
-  const double height = to.position - from.position;
-  const auto share = [&](std::uint64_t row) { return (motion.position(row) - from.position) / height; };
-  Stroke stroke{.begin = from.row, .end = to.row};
-  for (std::uint64_t row = from.row; row < to.row; ++row) {
-    if (share(row) < dwell) stroke.begin = row;
-    if (share(row) >= 1.0 - dwell) {
-      stroke.end = row;
-      break;
-    }
-  }
-  return stroke;
 }
 
 /// The work done along strokes that raise the position, less that along those that lower it.
@@ -123,11 +97,11 @@ void add_phases(std::vector<schema::PhaseSpan>& phases, const AxisMotion& motion
   if (first_open == 1) free_from = stroke(0).end;  // an opening before the first closing belongs to no cycle
   for (std::size_t i = first_open; i + 1 < turns.size(); i += 2) {
     ++cycle;
-    const Stroke closing = stroke(i);
+    const StrokeRows closing = stroke(i);
     add(schema::Phase::open_to_close, free_from, closing.begin);
     add(schema::Phase::closing, closing.begin, closing.end);
     const bool opens_again = i + 2 < turns.size();
-    const Stroke opening = opens_again ? stroke(i + 1) : Stroke{motion.rows(), motion.rows()};
+    const StrokeRows opening = opens_again ? stroke(i + 1) : StrokeRows{motion.rows(), motion.rows()};
     add(schema::Phase::close_to_open, closing.end, opening.begin);
     add(schema::Phase::opening, opening.begin, opening.end);
     free_from = opening.end;
@@ -135,6 +109,20 @@ void add_phases(std::vector<schema::PhaseSpan>& phases, const AxisMotion& motion
 }
 
 }  // namespace
+
+StrokeRows stroke_between(const AxisMotion& motion, const Turn& from, const Turn& to, double dwell) {
+  const double height = to.position - from.position;
+  const auto share = [&](std::uint64_t row) { return (motion.position(row) - from.position) / height; };
+  StrokeRows stroke{.begin = from.row, .end = to.row};
+  for (std::uint64_t row = from.row; row < to.row; ++row) {
+    if (share(row) < dwell) stroke.begin = row;
+    if (share(row) >= 1.0 - dwell) {
+      stroke.end = row;
+      break;
+    }
+  }
+  return stroke;
+}
 
 std::vector<double> mean_branch(const std::vector<std::vector<double>>& branches, std::size_t points) {
   std::vector<double> mean(points, nothing);

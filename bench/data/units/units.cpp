@@ -184,4 +184,34 @@ Unit parse_unit(std::string_view given) {
   return unit;
 }
 
+std::vector<std::string> symbols_of(std::string_view si) {
+  std::vector<std::string> texts;
+  std::vector<double> factors;
+  for (const Symbol& symbol : symbols) {
+    if (symbol.si != si || std::ranges::find(factors, symbol.factor) != factors.end()) continue;
+    factors.push_back(symbol.factor);
+    texts.emplace_back(symbol.text);
+  }
+  if (si.ends_with("/s")) {
+    for (const std::string& above : symbols_of(si.substr(0, si.size() - 2))) texts.push_back(above + "/s");
+  }
+  return texts;
+}
+
+std::vector<std::string> all_symbols() {
+  std::vector<std::string> texts;
+  for (const Symbol& symbol : symbols) {
+    const bool is_another_spelling =
+        symbol.text == "µs" || symbol.text == "µm" || symbol.text.starts_with("°");
+    if (!is_another_spelling) texts.emplace_back(symbol.text);
+  }
+  return texts;
+}
+
+std::string work_unit(std::string_view force_unit, std::string_view position_unit) {
+  const bool is_energy =
+      (force_unit == "N" && position_unit == "m") || (force_unit == "N·m" && position_unit == "rad");
+  return is_energy ? "J" : fmt::format("{}·{}", force_unit, position_unit);
+}
+
 }  // namespace kerf::bench

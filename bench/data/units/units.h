@@ -3,6 +3,7 @@
 #include <array>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace kerf::bench {
 
@@ -25,5 +26,15 @@ struct Unit {
 /// `·` or `*`, quotients with `/`, powers with `²`, `³`, `^2` or `^3`.
 /// @throws std::invalid_argument that names the symbol and lists those known.
 [[nodiscard]] Unit parse_unit(std::string_view text);
+
+/// The symbols that stand for a unit of SI, "s ms us min h" of "s": of those that say the same the first. Of
+/// a quotient by s, as "m/s", those of what is above, by s.
+[[nodiscard]] std::vector<std::string> symbols_of(std::string_view si);
+/// All of them.
+[[nodiscard]] std::vector<std::string> all_symbols();
+
+/// The unit of a force times the way it goes: "J" of N over m and of N·m over rad; "N·rad" of a force over an
+/// angle, which is no energy before it is multiplied by a lever.
+[[nodiscard]] std::string work_unit(std::string_view force_unit, std::string_view position_unit);
 
 }  // namespace kerf::bench

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "import/decimal.h"
-#include "import/text_layout.h"
+#include "import/text/text_layout.h"
 #include "tables/csv.h"
 
 namespace kerf::bench {

@@ -14,7 +14,8 @@
 #include "files/named_file.h"
 #include "formats/file_text.h"
 #include "import/column_map.h"
-#include "import/text_layout.h"
+#include "import/suggest/suggested_map.h"
+#include "import/text/text_layout.h"
 #include "recordings/provenance.h"
 
 namespace kerf::bench {
@@ -37,9 +38,9 @@ const char* separator_name(char separator) {
 
 /// A map of the columns whose headings give the unit of a time, a position and a force; empty where any of
 /// them is left to a guess.
-std::string map_of_headings(const TextLayout& layout, const std::string& name) {
+std::string map_of_headings(const TextLayout& layout, std::string_view text, const std::string& name) {
   if (layout.header_line == 0) return "";
-  const std::string words = suggest_map(layout);  // --map 'MAP', and what else it takes
+  const std::string words = suggest_map(layout, text);  // --map 'MAP', and what else it takes
   const auto begin = words.find('\'') + 1;
   const auto end = words.rfind('\'');
   if (end + 1 != words.size()) return "";  // there is no time
@@ -64,7 +65,7 @@ void look_at_text(const fs::path& path, const OfferedMap* map, DrawerFile& file)
     for (const TextColumn& column : layout.columns) file.found += " [" + column.heading + "]";
   }
   if (map == nullptr) {
-    file.map = map_of_headings(layout, file.path);
+    file.map = map_of_headings(layout, text.text(), file.path);
   } else {
     (void)match_columns(parse_map(map->import.map), layout, file.path);
   }

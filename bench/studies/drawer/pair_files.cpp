@@ -11,7 +11,7 @@
 
 #include "drawer/name_factors.h"
 #include "formats/file_text.h"
-#include "import/text_layout.h"
+#include "import/text/text_layout.h"
 #include "units/units.h"
 
 namespace kerf::bench {

@@ -13,6 +13,7 @@
 #include <kerf/population/held_out.h>
 
 #include "results/conclusions.h"
+#include "units/units.h"
 
 namespace kerf::bench {
 namespace {
@@ -170,7 +171,8 @@ void judge_group(const StudyResults& results, StudiedGroup& group) {
   if (group.counted.empty()) return;
   const StudiedRecording& first = results.recordings[group.counted.front()].result;
   group.quantities.push_back(cycle_quantity(results, group, "peak", first.force_unit, &StudiedCycle::peak));
-  group.quantities.push_back(cycle_quantity(results, group, "work", "J", &StudiedCycle::closing_work));
+  group.quantities.push_back(cycle_quantity(
+      results, group, "work", work_unit(first.force_unit, first.position_unit), &StudiedCycle::closing_work));
   for (const std::string& model : results.plan.laws) {
     group.laws.push_back(law_in_group(results, group, model));
     for (StudiedQuantity& quantity : parameters_in_group(results, group, model))

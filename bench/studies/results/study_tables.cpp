@@ -104,7 +104,8 @@ DescribedTable cycles_table(const StudyResults& results) {
                         {"begin", "s", "time of its first row"},
                         {"closing", "s", "duration of the closing"},
                         {"peak", "N (N·m about an axis)", "largest force"},
-                        {"closing_work", "J", "from the begin of the closing to the most closed row"},
+                        {"closing_work", "J (N·rad of a force over an angle)",
+                         "from the begin of the closing to the most closed row"},
                         {"good", "", "counts"},
                         {"reason", "", "what is wrong with it; of a good one what was found and accepted"}}};
   for (const DrawerRecording& one : results.recordings) {

@@ -41,12 +41,8 @@ json law_as_json(const StudiedLaw& law) {
 }
 
 json cycle_as_json(const StudiedCycle& cycle) {
-  return {{"cycle", cycle.number},
-          {"begin_s", cycle.begin_s},
-          {"closing_s", cycle.closing_s},
-          {"peak", cycle.peak},
-          {"closing_work_J", cycle.closing_work},
-          {"good", cycle.is_good},
+  return {{"cycle", cycle.number}, {"begin_s", cycle.begin_s},           {"closing_s", cycle.closing_s},
+          {"peak", cycle.peak},    {"closing_work", cycle.closing_work}, {"good", cycle.is_good},
           {"reason", cycle.reason}};
 }
 
@@ -79,7 +75,8 @@ StudiedCycle studied_cycle(const json& from) {
           .begin_s = from.at("begin_s"),
           .closing_s = from.at("closing_s"),
           .peak = from.at("peak"),
-          .closing_work = from.at("closing_work_J"),
+          // Earlier versions called it an energy, whatever the axis.
+          .closing_work = from.at(from.contains("closing_work") ? "closing_work" : "closing_work_J"),
           .is_good = from.at("good"),
           .reason = from.at("reason")};
 }

@@ -39,7 +39,7 @@ struct StudiedCycle {
   double begin_s = 0.0;
   double closing_s = 0.0;
   double peak = 0.0;
-  double closing_work = 0.0;  ///< [J]
+  double closing_work = 0.0;  ///< [work_unit()]
   bool is_good = true;
   std::string reason;  ///< why it is not, or what was found and accepted
 };

@@ -6,10 +6,9 @@
 #include <memory>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include <fmt/core.h>
-#include <pwd.h>
-#include <unistd.h>
 
 #include "cycles/cycle_view.h"
 #include "files/disk_room.h"
@@ -26,19 +25,13 @@ using Pace = Routes::Pace;
 constexpr double farthest_time_s = 1e12;
 constexpr std::uintmax_t largest_fit = std::uintmax_t{64} << 20U;
 
-/// Whoever started the studio; a page may say another.
-std::string usual_author() {
-  const passwd* const user = getpwuid(geteuid());
-  return user == nullptr || user->pw_name == nullptr ? "" : user->pw_name;
-}
-
 /// Why what a page has of the cycles is not what is there, for whoever has to decide.
 std::string why_changed(const schema::Recording& about, const std::string& uuid) {
   if (!uuid.empty() && uuid != about.header.uuid)
     return "Another recording has taken the place of this one since you began. Nothing is saved; what you "
            "changed "
            "stays in this tab.";
-  const std::vector<ToldEdit> edits = edits_of(about.header);
+  const std::vector<ToldEdit> edits = edits_of(about);
   const std::string who = edits.empty() ? "They were found anew or prepared by a program"
                                         : fmt::format("{} saved at {}: {}", edits.back().author,
                                                       edits.back().time, edits.back().what);
@@ -57,8 +50,11 @@ class CycleDesk {
   Json look(const std::string& id, const nlohmann::json& given) {
     const std::filesystem::path path = path_of(id);
     const auto recording = views_.opened(path);
-    Json json = cycle_view(*recording, path, cycle_question(given, recording->file().about()));
-    json["author"] = usual_author();
+    CycleQuestion question = cycle_question(given, recording->file().about());
+    if (question.step && recording->file().rows() <= max_rows_mended)
+      question.edit = with_step(recording->file(), std::move(question.edit), *question.step);
+    Json json = cycle_view(*recording, path, question);
+    json["author"] = usual_author();  // a page may say another
     json["uuid"] = recording->file().about().header.uuid;
     return json;
   }
@@ -111,7 +107,7 @@ class CycleDesk {
       const auto known = one.find("cycles_sha256");
       if (known == one.end() || !known->is_string()) return unknown;
       if (known->get<std::string>() == cycles_sha256_of(about)) return {{"earlier", false}, {"why", ""}};
-      const std::vector<ToldEdit> edits = edits_of(about.header);
+      const std::vector<ToldEdit> edits = edits_of(about);
       return {{"earlier", true},
               {"why", edits.empty() ? "It is of earlier cycles: they were found anew since. Fit again."
                                     : fmt::format("It is of earlier cycles: {} edited them at {}. Fit again.",

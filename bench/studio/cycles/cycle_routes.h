@@ -10,11 +10,11 @@ namespace kerf::bench {
 /// routes.
 ///
 ///     GET  /api/cycles?id=            cycle_view() of those stored, or of what is found by itself; "author"
-///     POST /api/cycles/look           {recording, axis, settings, phases, said, loop}: cycle_view(); nothing
-///                                     is kept
+///     POST /api/cycles/look           {recording, axis, settings, phases, said, step, loop}: cycle_view() of
+///                                     the cycles after the step; nothing is kept
 ///     GET  /api/cycles/row?id=&time=  {"row", "time_s"}: the first row at or after a time, or the last one
 ///     POST /api/cycles/save           {recording, version, author, axis, settings, phases, said}: keeps them
-///                                     in the recording with a line of its history, and answers as GET
+///                                     in the recording as an edit with its author, and answers as GET
 ///     GET  /api/cycles/fit?id=&fit=   {"earlier": true, false, or null where that is not known, "why"}:
 ///                                     whether a fit.json is of other cycles than the recording has now
 ///

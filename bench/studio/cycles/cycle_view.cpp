@@ -88,13 +88,22 @@ std::vector<schema::CycleFlag> said_in_request(const nlohmann::json& given) {
   return said;
 }
 
-std::vector<schema::CycleFlag> said_by_hand(const schema::Recording& about) {
-  std::vector<schema::CycleFlag> said;
-  if (!about.cycle_flags) return said;
-  std::ranges::copy_if(about.cycle_flags->flags, std::back_inserter(said), [](const schema::CycleFlag& flag) {
-    return flag.fault == "by_hand" || flag.fault == "accepted";
-  });
-  return said;
+std::optional<CycleStep> step_in(const nlohmann::json& given) {
+  const auto found = given.find("step");
+  if (found == given.end() || found->is_null()) return std::nullopt;
+  if (!found->is_object()) throw RequestError(400, "'step' is no step");
+  CycleStep step{.kind = CycleStep::Kind::split,
+                 .cycle = static_cast<std::uint32_t>(number_in(*found, "cycle", 1.0, 4e9)),
+                 .row = 0};
+  const std::string kind = text_in(*found, "kind");
+  if (kind == "split") {
+    step.row = static_cast<std::uint64_t>(number_in(*found, "row", 0.0, 1e15));
+  } else if (kind == "merge") {
+    step.kind = CycleStep::Kind::merge;
+  } else {
+    throw RequestError(400, "a step is neither 'split' nor 'merge'");
+  }
+  return step;
 }
 
 Json said_as_json(const std::vector<schema::CycleFlag>& said) {
@@ -157,9 +166,9 @@ Json loop_as_json(RecordingView& recording, const schema::Cycles& cycles, std::u
   return {{"cycle", wanted}, {"position", numbers(loops[0].position)}, {"force", numbers(loops[0].force)}};
 }
 
-Json edits_as_json(const schema::Header& header) {
+Json edits_as_json(const schema::Recording& about) {
   Json list = Json::array();
-  for (const ToldEdit& edit : edits_of(header))
+  for (const ToldEdit& edit : edits_of(about))
     list.push_back({{"time", edit.time}, {"author", edit.author}, {"what", edit.what}});
   return list;
 }
@@ -180,6 +189,7 @@ CycleQuestion cycle_question(const nlohmann::json& given, const schema::Recordin
   question.edit.phases = phases_in(given);
   question.edit.said =
       given.contains("said") || question.edit.found_by ? said_in_request(given) : said_by_hand(about);
+  question.step = step_in(given);
   question.loop = static_cast<std::uint32_t>(number_or(given, "loop", 0.0, 0.0, 4e9));
   return question;
 }
@@ -227,7 +237,7 @@ Json cycle_view(RecordingView& recording, const std::filesystem::path& path, con
             {"said", said_as_json(question.edit.said)},
             {"average", nullptr},
             {"loop", nullptr},
-            {"edits", edits_as_json(file.about().header)}};
+            {"edits", edits_as_json(file.about())}};
   if (file.rows() > max_rows_mended) {
     json["why_none"] = json["locked"];
     return json;

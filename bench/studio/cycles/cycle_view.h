@@ -20,11 +20,13 @@ inline constexpr std::uint64_t max_rows_mended = 5'000'000;
 struct CycleQuestion {
   std::size_t axis = 0;
   CycleEdit edit;
-  std::uint32_t loop = 0;  ///< the cycle whose force over position is wanted; 0: none
+  std::optional<CycleStep> step;  ///< to be put on top of the edit
+  std::uint32_t loop = 0;         ///< the cycle whose force over position is wanted; 0: none
 };
 
 /// {"axis", "settings": null or {"prominence", "corner_hz", "dwell", "closing"}, "phases": [[cycle, phase,
-/// begin, end], ...], "said": [{"cycle", "kind", "reason"}], "loop"}; all but the axis may be left out.
+/// begin, end], ...], "said": [{"cycle", "kind", "reason"}], "step": {"kind": "split" or "merge", "cycle",
+/// "row"}, "loop"}; all but the axis may be left out.
 /// Without settings the cycles are those stored; where there are none, those that are found by themselves.
 /// @throws RequestError 400.
 [[nodiscard]] CycleQuestion cycle_question(const nlohmann::json& given, const schema::Recording& about);

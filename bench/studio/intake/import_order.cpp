@@ -9,6 +9,7 @@
 #include <fmt/core.h>
 
 #include "files/whole_file.h"
+#include "intake/page_words.h"
 #include "jobs/job_process.h"
 
 namespace kerf::bench {
@@ -81,8 +82,10 @@ class ImportRun {
                                       .errors = upload.errors(),
                                       .told = told},
                                      progress_);
-      if (status != 0) return failed(as_named(sentence_in(read_whole_file(upload.errors()), status), upload));
-      const auto about = Json::parse(read_whole_file(said));
+      if (status != 0)
+        return failed(in_page_words(as_named(sentence_in(read_whole_file(upload.errors()), status), upload)));
+      auto about = Json::parse(read_whole_file(said));
+      for (Json& warning : about["warnings"]) warning = in_page_words(warning.get<std::string>());
       (void)workspace_.scan();
       std::error_code ignored;
       fs::remove(upload.data(), ignored);  // the recording names it and its SHA-256
@@ -92,7 +95,7 @@ class ImportRun {
               {"name", output.filename().string()},
               {"about", about}};
     } catch (const std::exception& error) {
-      return failed(as_named(error.what(), upload));
+      return failed(in_page_words(as_named(error.what(), upload)));
     }
   }
 

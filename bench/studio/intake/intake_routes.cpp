@@ -15,6 +15,7 @@
 #include "import/preview.h"
 #include "intake/import_order.h"
 #include "intake/mapping_json.h"
+#include "intake/page_words.h"
 #include "intake/preview_json.h"
 #include "intake/uploads.h"
 
@@ -96,13 +97,13 @@ class Intake {
 
   Json preview(const nlohmann::json& given) {
     const Upload upload = whole(text_in(given, "upload"));
-    const ImportFile mapping = mapping_in(given, false);
     try {
+      const ImportFile mapping = mapping_in(given, false);
       const ImportHead& head = heads_.of(upload, mapping.options.sheet);
       return preview_as_json(preview_import(upload.head(), upload.name, import_options_of(mapping)), head,
                              upload);
     } catch (const std::invalid_argument& refused) {
-      throw RequestError(400, as_named(refused.what(), upload));
+      throw RequestError(400, in_page_words(as_named(refused.what(), upload)));
     }
   }
 

@@ -3,6 +3,8 @@
 #include <string>
 
 #include "files/json_number.h"
+#include "import/column_map.h"
+#include "intake/page_words.h"
 
 namespace kerf::bench {
 namespace {
@@ -32,6 +34,14 @@ Json columns_as_json(const TextLayout& layout) {
   return list;
 }
 
+/// To choose from, by channel; "own" of a channel of one's own.
+Json units_as_json() {
+  Json units = Json::object();
+  for (const char* const channel : {"time", "position", "velocity", "force", "force_commanded", "own"})
+    units[channel] = usual_units_of(channel);
+  return units;
+}
+
 Json mapped_as_json(const ImportPreview& preview) {
   Json list = Json::array();
   if (!preview.imported) return list;
@@ -59,15 +69,17 @@ Json preview_as_json(const ImportPreview& preview, const ImportHead& head, const
               {"preamble_lines", layout.preamble_lines}}},
             {"suggested", {{"map", preview.suggested}, {"has_time", preview.suggests_time}}},
             {"mapped", mapped_as_json(preview)},
-            {"problem", as_named(preview.problem, upload)},
+            {"units", units_as_json()},
+            {"problem", in_page_words(as_named(preview.problem, upload))},
             {"warnings", Json::array()},
-            {"notes", head.notes},
+            {"notes", Json::array()},
             {"rows", 0},
             {"seconds", 0.0},
             {"is_whole", head.is_whole}};
+  for (const std::string& note : head.notes) json["notes"].push_back(in_page_words(note));
   if (!preview.imported) return json;
   for (const std::string& warning : preview.imported->warnings)
-    json["warnings"].push_back(as_named(warning, upload));
+    json["warnings"].push_back(in_page_words(as_named(warning, upload)));
   const auto& time_s = preview.imported->recording.time;
   json["rows"] = time_s.size();
   json["seconds"] = time_s.empty() ? Json(0.0) : json_number(time_s.back());

@@ -13,7 +13,8 @@ namespace kerf::bench {
 ///      "lines": [{"number", "kind", "fields"}], "irregular": [the same],
 ///      "layout": {"separator", "decimal", "header_line", "units_line", "preamble_lines"},
 ///      "suggested": {"map", "has_time"}, "mapped": [{"channel", "column", "unit", "unit_from_file", "si"}],
-///      "problem", "warnings", "notes", "rows", "seconds", "is_whole"}
+///      "units": {CHANNEL: [units to choose from]}, "problem", "warnings", "notes", "rows", "seconds",
+///      "is_whole"}
 [[nodiscard]] nlohmann::ordered_json preview_as_json(const ImportPreview& preview, const ImportHead& head,
                                                      const Upload& upload);
 

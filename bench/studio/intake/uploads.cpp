@@ -98,8 +98,8 @@ Uploads::Uploads(const fs::path& workspace) : folder_(workspace / folder_name) {
 Upload Uploads::begin(const std::string& name, std::uintmax_t bytes, std::uint64_t modified_ms) {
   check_name(name);
   if (bytes > largest)
-    throw RequestError(413, fmt::format("{}: {}; a page takes up to {}: kerf import --max-bytes takes more",
-                                        name, in_gibibytes(bytes), in_gibibytes(largest)));
+    throw RequestError(413, fmt::format("{}: {}; a page takes up to {}, kerf import at a terminal more", name,
+                                        in_gibibytes(bytes), in_gibibytes(largest)));
   if (bytes == 0)
     throw RequestError(400, fmt::format("{}: the file is empty; expected lines of numbers", name));
   const std::string id =

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <vector>
 
@@ -11,7 +12,7 @@
 #include <kerf/fitting/jnd.h>
 
 #include "fits/fit_series.h"
-#include "inspect/counted_rows.h"
+#include "fits/judged_rows.h"
 #include "laws/render.h"
 #include "recordings/axis_series.h"
 #include "results/error_places.h"
@@ -27,7 +28,10 @@ constexpr std::size_t fewest_in_bin = 5;
 /// Bins of penetration, none with hardly any row: an encoder may have fewer steps than there are bins.
 class Bins {
  public:
-  explicit Bins(const std::vector<double>& penetration) {
+  explicit Bins(const AxisSeries& series) {
+    std::vector<double> penetration;  // of the rows that the law is judged by
+    for (std::size_t row = 0; row < series.penetration.size(); ++row)
+      if (is_judged(series, row)) penetration.push_back(series.penetration[row]);
     const auto [least, most] = std::minmax_element(penetration.begin(), penetration.end());
     const double width = std::max(1e-12, (*most - *least) / static_cast<double>(most_bins));
     std::array<std::size_t, most_bins> rows{};
@@ -44,8 +48,8 @@ class Bins {
       in_bin = 0;
     }
     ++count_;
-    of_row_.reserve(penetration.size());
-    for (const double at : penetration) of_row_.push_back(merged[equal_bin(at, *least, width)]);
+    of_row_.reserve(series.penetration.size());
+    for (const double at : series.penetration) of_row_.push_back(merged[equal_bin(at, *least, width)]);
   }
   [[nodiscard]] std::size_t count() const { return count_; }
   [[nodiscard]] std::size_t of(std::size_t row) const { return of_row_[row]; }
@@ -100,16 +104,24 @@ void check_units(const LawFile& law, const schema::Axis& axis) {
                                           axis.position_unit));
 }
 
-/// Smallest and largest of a stretch of rows, in columns.
+/// Smallest and largest of a stretch of rows, in columns; null in one without such a row.
 struct ColumnExtremes {
   Json smallest = Json::array();
   Json largest = Json::array();
 
-  void add(const std::vector<double>& values, std::size_t begin, std::size_t end) {
-    const auto [least, most] = std::minmax_element(values.begin() + static_cast<std::ptrdiff_t>(begin),
-                                                   values.begin() + static_cast<std::ptrdiff_t>(end));
-    smallest.push_back(*least);
-    largest.push_back(*most);
+  /// Of the rows that the law is judged by, or of the others.
+  void add(const std::vector<double>& values, const AxisSeries& series, std::size_t begin, std::size_t end,
+           bool judged = true) {
+    double least = std::numeric_limits<double>::infinity();
+    double most = -least;
+    for (std::size_t row = begin; row < end; ++row) {
+      if (is_judged(series, row) != judged) continue;
+      least = std::min(least, values[row]);
+      most = std::max(most, values[row]);
+    }
+    const bool none = least > most;
+    smallest.push_back(none ? Json(nullptr) : Json(least));
+    largest.push_back(none ? Json(nullptr) : Json(most));
   }
 };
 
@@ -120,20 +132,24 @@ void add_over_time(const AxisSeries& series, const std::vector<double>& force,
   Json time_s = Json::array();
   ColumnExtremes left;
   ColumnExtremes measured;
+  ColumnExtremes not_judged;
   ColumnExtremes by_law;
   for (std::size_t column = 0; column < count; ++column) {
     const std::size_t begin = column * rows / count;
     const std::size_t end = (column + 1) * rows / count;
     time_s.push_back(series.time_s[begin]);
-    left.add(residual, begin, end);
-    measured.add(series.force, begin, end);
-    by_law.add(force, begin, end);
+    left.add(residual, series, begin, end);
+    measured.add(series.force, series, begin, end);
+    not_judged.add(series.force, series, begin, end, false);
+    by_law.add(force, series, begin, end);
   }
   to["time_s"] = std::move(time_s);
   to["smallest"] = std::move(left.smallest);
   to["largest"] = std::move(left.largest);
   to["over_time"] = {{"measured_smallest", std::move(measured.smallest)},
                      {"measured_largest", std::move(measured.largest)},
+                     {"not_judged_smallest", std::move(not_judged.smallest)},
+                     {"not_judged_largest", std::move(not_judged.largest)},
                      {"law_smallest", std::move(by_law.smallest)},
                      {"law_largest", std::move(by_law.largest)}};
 }
@@ -150,10 +166,11 @@ void add_over_penetration(const AxisSeries& series, const Bins& bins, const std:
   std::array<Binned, 2> measured{Binned(bins.count()), Binned(bins.count())};  // closing, opening
   std::array<Binned, 2> by_law = measured;
   for (std::size_t row = 0; row < force.size(); ++row) {
+    if (!is_judged(series, row)) continue;
     const std::size_t bin = bins.of(row);
     const std::size_t branch = branch_of(series, row);
     penetration.add(bin, series.penetration[row]);
-    residual.add(bin, force[row] - series.force[row]);
+    residual.add(bin, series.force[row] - force[row]);
     measured[branch].add(bin, series.force[row]);
     by_law[branch].add(bin, force[row]);
   }
@@ -173,7 +190,7 @@ void add_interval(const AxisSeries& series, const Bins& bins, const models::Law&
   if (half.empty()) return;
   std::array<Binned, 2> wide{Binned(bins.count()), Binned(bins.count())};
   for (std::size_t row = 0; row < half.size(); ++row)
-    wide[branch_of(series, row)].add(bins.of(row), half[row]);
+    if (is_judged(series, row)) wide[branch_of(series, row)].add(bins.of(row), half[row]);
   to["interval"] = {
       {"confidence", known.confidence}, {"closing", wide[0].means()}, {"opening", wide[1].means()}};
 }
@@ -181,21 +198,21 @@ void add_interval(const AxisSeries& series, const Bins& bins, const models::Law&
 }  // namespace
 
 Json residuals_of(const schema::Recording& recording, std::size_t axis, const LawFile& law,
-                  std::size_t columns, const std::optional<FitUncertainty>& known) {
+                  std::size_t columns, const std::optional<FitUncertainty>& known, const Json& fits) {
   const schema::Axis& about = recording.axes.at(axis);
   check_units(law, about);
   AxisSeries series = fit_series(recording, axis, law.contact);
   if (series.force.empty()) throw std::invalid_argument("the recording has no row that is finite");
   const fitting::Jnd jnd = fitting::jnd_of(about.force_unit, about.lever);
-  const std::size_t counted = mark_counted(series, recording, axis, {}, jnd.threshold).rows;
+  const std::size_t counted = mark_judged(series, recording, axis, fits).rows;
   const models::Law fitted = without_rendering_aids(law.law);
   const std::vector<double> force = render(fitted, series);
   std::vector<double> residual;
   double squares = 0.0;
   double worst = 0.0;
   for (std::size_t i = 0; i < force.size(); ++i) {
-    residual.push_back(force[i] - series.force[i]);
-    if (!series.counts.empty() && series.counts[i] == 0) continue;
+    residual.push_back(series.force[i] - force[i]);
+    if (!is_judged(series, i)) continue;
     squares += residual.back() * residual.back();
     worst = std::max(worst, std::abs(residual.back()));
   }
@@ -206,7 +223,7 @@ Json residuals_of(const schema::Recording& recording, std::size_t axis, const La
               {"rmse", std::sqrt(squares / static_cast<double>(counted))},
               {"worst", worst},
               {"jnd_n", jnd.at(fitting::rms_of(fitted_view(series)))}};
-  const Bins bins(series.penetration);
+  const Bins bins(series);
   add_over_time(series, force, residual, columns, result);
   add_over_penetration(series, bins, force, result);
   result["places"] = error_places(recording, axis, series, residual);

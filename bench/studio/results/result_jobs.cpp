@@ -25,7 +25,7 @@ std::string run_fit(Workspace& workspace, const FitRequest& request, JobProgress
   options.stop = &progress.stop;
   options.done = &progress.done;
   options.fit.threads = usable_processors();
-  progress.steps = models_of(options).size();
+  progress.steps = steps_of(options);
   RecordingFit fit = fit_recordings(std::span(&source, 1), options);
   if (fit.laws.empty()) {
     const std::string reason = fit.refusal();

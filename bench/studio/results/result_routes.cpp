@@ -171,15 +171,21 @@ HttpResponse law(const HttpRequest& request, Workspace& workspace) {
   return json_response(law_as_json(read_law_file(entry.path), entry.name));
 }
 
-/// What the fit beside a law says of how well it is known; nothing where there is none, or another's.
-std::optional<FitUncertainty> uncertainty_of(const std::filesystem::path& law) {
+/// The fit beside a law, if it is one of it, and what it says of how well the law is known.
+struct FitBeside {
+  nlohmann::ordered_json fits;
+  std::optional<FitUncertainty> known;
+};
+
+FitBeside fit_beside(const std::filesystem::path& law) {
   try {
     const std::filesystem::path fit = law.parent_path() / "fit.json";
-    if (!std::filesystem::exists(fit)) return std::nullopt;
-    return uncertainty_in(nlohmann::ordered_json::parse(read_named_file(fit, largest_result)),
-                          law.filename().string());
+    if (!std::filesystem::exists(fit)) return {};
+    FitBeside beside{.fits = nlohmann::ordered_json::parse(read_named_file(fit, largest_result))};
+    beside.known = uncertainty_in(beside.fits, law.filename().string());
+    return beside;
   } catch (const std::exception&) {
-    return std::nullopt;  // whoever asks for the fit itself is told
+    return {};  // whoever asks for the fit itself is told
   }
 }
 
@@ -189,8 +195,9 @@ HttpResponse residuals(const HttpRequest& request, Workspace& workspace) {
   const std::size_t columns = count_in_query(request, "columns", max_residual_columns);
   const schema::Recording recording = schema::read_recording(file.path);
   const std::size_t axis = find_axis(recording, text_in_query(request, "axis"));
+  const FitBeside beside = fit_beside(law_file.path);
   return json_response(
-      residuals_of(recording, axis, read_law_file(law_file.path), columns, uncertainty_of(law_file.path)));
+      residuals_of(recording, axis, read_law_file(law_file.path), columns, beside.known, beside.fits));
 }
 
 }  // namespace

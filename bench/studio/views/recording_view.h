@@ -15,11 +15,11 @@
 #include <kerf/schema/recording_file.h>
 
 #include "views/hysteresis_loops.h"
-#include "views/pyramid.h"
-#include "views/row_index.h"
-#include "views/row_preparation.h"
+#include "views/rows/pyramid.h"
+#include "views/rows/row_index.h"
+#include "views/rows/row_preparation.h"
+#include "views/rows/view_cache.h"
 #include "views/trace_view.h"
-#include "views/view_cache.h"
 
 namespace kerf::bench {
 

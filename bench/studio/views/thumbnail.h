@@ -5,7 +5,7 @@
 #include <mutex>
 #include <string>
 
-#include "views/view_cache.h"
+#include "views/rows/view_cache.h"
 
 namespace kerf::bench {
 

@@ -37,9 +37,12 @@ auto fields(Is<Cycles> auto& x) {
 }
 auto fields(Is<CycleFlag> auto& x) { return std::tie(x.cycle, x.fault, x.reason); }
 auto fields(Is<CycleFlags> auto& x) { return std::tie(x.created, x.software, x.felt, x.flags); }
+auto fields(Is<CycleChange> auto& x) {
+  return std::tie(x.edit, x.cycle, x.phase, x.row_before, x.row_after, x.time, x.author, x.kind, x.text);
+}
 /// Rows are asked for apart.
 auto fields(Is<Recording> auto& x) {
-  return std::tie(x.header, x.axes, x.channels, x.events, x.cycles, x.cycle_flags);
+  return std::tie(x.header, x.axes, x.channels, x.events, x.cycles, x.cycle_flags, x.cycle_edits);
 }
 auto fields(Is<in_process::RecordingFacts> auto& x) {
   return std::tie(x.about, x.rows, x.is_live, x.first_time_s, x.last_time_s, x.period_s, x.widths);

@@ -89,6 +89,7 @@ Handle record_type(std::span<const Field> fields, std::size_t record_size) {
     const hid_t member = field.type == "text"      ? text.id()
                          : field.type == "float64" ? native<double>()
                          : field.type == "uint64"  ? native<std::uint64_t>()
+                         : field.type == "int64"   ? native<std::int64_t>()
                          : field.type == "uint32"  ? native<std::uint32_t>()
                                                    : native<std::uint8_t>();
     call(H5Tinsert, type.id(), field.name.c_str(), field.offset, member);

@@ -34,6 +34,7 @@ constexpr std::array group_table{
     Group{"/cycles", optional, false, "What `kerf segment` found"},
     Group{"/cycle_flags", optional, false,
           "What is wrong with cycles, as `kerf segment` found it and as a person said since"},
+    Group{"/cycle_edits", optional, false, "What a person changed of the cycles by hand"},
 };
 
 const std::array attribute_table{
@@ -193,6 +194,20 @@ const std::array dataset_table{
         required,
         "One thing that is said of a cycle: `put_down`, `under_force`, `clipped`, `interrupted`, `outlier`, "
         "`by_hand`, or `accepted` (it is good whatever else is said of it), and why",
+        {},
+        {}},
+    Dataset{
+        "/cycle_edits/changes",
+        "{edit uint32, cycle uint32, phase uint8, row_before int64, row_after int64, time text, author text, "
+        "kind text, text text}",
+        "H",
+        Units::one,
+        required,
+        "One change: `found` (anew), `begin` or `end` of a phase moved, `split`, `merged`, `divided` "
+        "(several cycles made several), `left_out`, `taken`, `as_found` (neither any more). Changes that "
+        "were saved together share number, time and author. `phase` as in `/cycles/phases`, 0 for none; "
+        "rows and cycles as they were numbered then, -1 for no row, 0 for no cycle; `text` says it in a "
+        "sentence",
         {},
         {}},
 };

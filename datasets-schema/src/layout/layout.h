@@ -38,7 +38,7 @@ struct Dataset {
   std::string_view path;
   std::string_view type;   ///< as h5::type_name() says it
   std::string_view shape;  ///< one letter a dimension: N rows, D axes, E events, P phases, C cycles, G grid,
-                           ///< K flags of cycles
+                           ///< K flags of cycles, H changes by hand
   Units units;
   bool required;  ///< in its group
   std::string_view description;
@@ -78,6 +78,7 @@ inline constexpr std::string_view samples = "/samples";
 inline constexpr std::string_view channels = "/samples/channels";
 inline constexpr std::string_view cycles = "/cycles";
 inline constexpr std::string_view cycle_flags = "/cycle_flags";
+inline constexpr std::string_view cycle_edits = "/cycle_edits";
 
 /// The group that a path stands in: "/samples" of "/samples/time", "/" of "/events".
 [[nodiscard]] std::string_view parent(std::string_view path);

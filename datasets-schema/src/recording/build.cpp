@@ -94,7 +94,8 @@ void write_origin(hid_t file, const std::string& path, const Properties& propert
   write_properties(group.id(), properties);
 }
 
-// The longest beginning that fits without splitting a UTF-8 character.
+}  // namespace
+
 std::size_t fitting(const std::string& text, std::size_t room) {
   if (text.size() <= room) return text.size();
   std::size_t size = room;
@@ -106,8 +107,6 @@ std::string text_in(const std::byte* field, std::size_t room) {
   const auto* start = reinterpret_cast<const char*>(field);
   return {start, std::find(start, start + room, '\0')};
 }
-
-}  // namespace
 
 void check_property(const std::string& path, const std::string& name) {
   if (!is_in_table(path, name)) return;

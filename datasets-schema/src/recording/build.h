@@ -61,4 +61,9 @@ struct TextRoom {
 [[nodiscard]] std::vector<CycleFlag> unpack_flags(std::span<const std::byte> records, const TextRoom& room);
 [[nodiscard]] h5::Handle phase_type();
 
+/// Bytes of a text that go into so much room without splitting a UTF-8 character.
+[[nodiscard]] std::size_t fitting(const std::string& text, std::size_t room);
+/// The text of a field of fixed size, which ends at its first zero.
+[[nodiscard]] std::string text_in(const std::byte* field, std::size_t room);
+
 }  // namespace kerf::schema

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "recording/build.h"
+#include "recording/cycle_changes.h"
 
 namespace kerf::schema {
 namespace {
@@ -21,6 +22,7 @@ class PartReader {
     read_events();
     read_phases();
     read_cycle_flags();
+    read_cycle_edits();
     return std::move(recording_);
   }
 
@@ -141,6 +143,17 @@ class PartReader {
   void read_cycle_flags() {
     if (recording_.cycle_flags)
       recording_.cycle_flags->flags = read_records("/cycle_flags/flags", flag_type, unpack_flags);
+  }
+
+  void read_cycle_edits() {
+    if (!h5::is_group(file_, std::string(layout::cycle_edits))) return;
+    const auto dataset = h5::open(file_, "/cycle_edits/changes");
+    const hsize_t count = h5::describe(dataset.id()).extent.front();
+    if (count == 0) return;
+    const ChangeRoom room = room_of_changes(h5::field_sizes(dataset.id()));
+    std::vector<std::byte> records(count * record_size(room));
+    h5::read(dataset.id(), change_type(room).id(), count, records.data());
+    recording_.cycle_edits = unpack_changes(records, room);
   }
 
   /// Records of a number and two texts.

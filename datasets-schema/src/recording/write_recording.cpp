@@ -11,6 +11,7 @@
 #include "hdf5/files.h"
 #include "in_process.h"
 #include "recording/build.h"
+#include "recording/cycle_changes.h"
 
 namespace kerf::schema {
 namespace {
@@ -32,6 +33,8 @@ hsize_t length_of(char letter, const Recording& recording, hsize_t rows) {
       return recording.cycles->closing.size();
     case 'K':
       return recording.cycle_flags->flags.size();
+    case 'H':
+      return recording.cycle_edits.size();
     default:
       return recording.cycles->grid.size();
   }
@@ -88,6 +91,15 @@ class DatasetWriter {
     const auto& flags = recording_.cycle_flags->flags;
     const TextRoom room = room_for(flags);
     write_records(layout::dataset("/cycle_flags/flags"), flag_type(room), pack(flags, room).data());
+  }
+
+  void write_cycle_edits() {
+    const auto& changes = recording_.cycle_edits;
+    if (changes.empty()) return;
+    write_group("/cycle_edits");
+    const ChangeRoom room = room_for_changes(changes);
+    write_records(layout::dataset("/cycle_edits/changes"), change_type(room),
+                  pack_changes(changes, room).data());
   }
 
  private:
@@ -227,6 +239,7 @@ void write_datasets(hid_t file, const Recording& about, const RecordedRows& rows
   writer.write_events();
   writer.write_cycles();
   writer.write_cycle_flags();
+  writer.write_cycle_edits();
 }
 
 void require_axes(const Recording& recording) {

@@ -37,6 +37,7 @@ class ContentCheck {
     check_events();
     if (recording_.cycles) check_cycles(*recording_.cycles);
     if (recording_.cycle_flags) check_cycle_flags(*recording_.cycle_flags);
+    check_cycle_edits(recording_.cycle_edits);
   }
 
  private:
@@ -202,6 +203,38 @@ class ContentCheck {
         [&](std::size_t row) { return flags.flags[row].cycle < 1 || flags.flags[row].cycle > last; },
         [&](std::size_t row) { return "cycle " + std::to_string(flags.flags[row].cycle); },
         last == 0 ? "cycles in /cycles" : "a cycle from 1 to " + std::to_string(last));
+  }
+
+  /// Cycles and rows are of the recording as it was: how many it has now bounds neither.
+  void check_cycle_edits(const std::vector<CycleChange>& changes) {
+    const std::string where = "/cycle_edits/changes";
+    const auto check = [&](const auto& is_right, const auto& describe, const std::string& expected) {
+      check_rows(
+          where, changes.size(), [&](std::size_t row) { return !is_right(row); }, describe, expected);
+    };
+    check([&](std::size_t row) { return std::ranges::count(cycle_change_kinds, changes[row].kind) == 1; },
+          [&](std::size_t row) { return "kind '" + changes[row].kind + "'"; },
+          "a kind as in the description");
+    check([&](std::size_t row) { return is_utc_time(changes[row].time); },
+          [&](std::size_t row) { return "time '" + changes[row].time + "'"; },
+          std::string(expected_utc_time));
+    check([&](std::size_t row) { return !changes[row].author.empty(); },
+          [](std::size_t) { return "no author"; }, "an author");
+    check([&](std::size_t row) { return changes[row].phase <= static_cast<int>(Phase::close_to_open); },
+          [&](std::size_t row) { return "phase " + std::to_string(changes[row].phase); },
+          "a phase from 1 to 4, or 0");
+    check([&](std::size_t row) { return std::min(changes[row].row_before, changes[row].row_after) >= -1; },
+          [](std::size_t) { return "a row below -1"; }, "rows, or -1");
+    const auto before = [&](std::size_t row) { return row == 0 ? CycleChange{} : changes[row - 1]; };
+    check(
+        [&](std::size_t row) {
+          const CycleChange was = before(row);
+          if (row == 0 || changes[row].edit == was.edit + 1) return row > 0 || changes[row].edit == 1;
+          return changes[row].edit == was.edit && changes[row].time == was.time &&
+                 changes[row].author == was.author;
+        },
+        [&](std::size_t row) { return "edit " + std::to_string(changes[row].edit); },
+        "edits counted from 1, each with one time and one author");
   }
 
   const in_process::OpenRecording& file_;

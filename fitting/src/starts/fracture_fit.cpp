@@ -2,35 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include <kerf/models/exponential.h>
 #include <kerf/models/fracture.h>
 
-#include "starts/scan.h"
+#include "starts/fracture_events.h"
 
 namespace kerf::fitting {
 namespace {
 
-constexpr int depths = 16;              ///< at which tissue may have yielded, on the first grid
-constexpr int refinements = 14;         ///< of that depth, by golden section
-constexpr double blade_width_m = 0.01;  ///< held: forces tell only its product with the toughness
-constexpr double drop_share = 0.5;
-constexpr double drop_time_s = 0.02;
-constexpr double least_peak_share = 0.1;  ///< of the largest force: what is less is noise
+using Coordinates = FractureCoordinates;
 
-double squares_of(const Problem& problem, const Samples& samples, const Weights& weights,
-                  const std::vector<double>& values, const RobustLoss& loss) {
-  const auto force = rendered(problem, Values(problem.runs, values), samples);
-  double squares = 0.0;
-  for (std::size_t i = 0; i < force.size(); ++i) {
-    squares += loss(weights[i] * (force[i] - samples.force[i]) * (force[i] - samples.force[i])).rho;
-  }
-  return squares;
-}
+constexpr int depths = 16;       ///< at which tissue may have yielded, on the first grid
+constexpr int refinements = 12;  ///< of that depth, by golden section
+constexpr int cracks = 12;       ///< lengths of crack for each, from that depth to the largest penetration
+constexpr std::size_t few_rows = 1000;
+constexpr std::size_t refined = 2;  ///< of the depths, those of the least squares
 
 /// The samples before each run first comes to a depth: there the tissue is whole.
 Weights before_depth(const Samples& samples, const Weights& weights, double depth) {
@@ -56,63 +45,127 @@ double force_of_cutting(const Samples& samples, const Weights& weights, double d
   return count > 0.0 ? std::max(sum / count, 1e-9) : 1e-9;
 }
 
-/// Where the force falls by more than half of it within 20 ms while the tool goes on: row of each peak.
-std::vector<std::size_t> ruptures_in(const Samples& samples, const Run& run, double least_peak) {
-  std::vector<std::size_t> peaks;
-  const auto ahead =
-      static_cast<std::size_t>(std::max(1.0, std::round(drop_time_s / samples.median_period_s)));
-  for (std::size_t i = run.begin; i + 1 < run.end; ++i) {
-    const double peak = samples.force[i];
-    if (peak < least_peak || samples.force[i + 1] >= peak || !(samples.motion[i].velocity > 0.0)) continue;
-    const std::size_t last = std::min(i + ahead, run.end - 1);
-    const auto low = std::min_element(samples.force.begin() + static_cast<std::ptrdiff_t>(i),
-                                      samples.force.begin() + static_cast<std::ptrdiff_t>(last) + 1);
-    if (*low > (1.0 - drop_share) * peak) continue;
-    peaks.push_back(i);
-    i = static_cast<std::size_t>(low - samples.force.begin());
-  }
-  return peaks;
-}
+/// Where a search stands.
+struct Standing {
+  Eigen::VectorXd at;
+  double squares = std::numeric_limits<double>::infinity();
+};
 
-/// The samples cut at the ruptures: each part is a run that begins with relaxed tissue at zero penetration.
-Samples between_ruptures(const Samples& samples, const std::vector<std::size_t>& peaks) {
-  Samples parts(samples);
-  parts.runs.clear();
-  std::vector<std::size_t> borders;
-  for (const Run& run : samples.runs) borders.push_back(run.begin);
-  for (const std::size_t peak : peaks) borders.push_back(peak + 1);
-  std::sort(borders.begin(), borders.end());
-  borders.push_back(samples.size());
-  for (std::size_t k = 0; k + 1 < borders.size(); ++k) {
-    if (borders[k + 1] == borders[k]) continue;
-    parts.runs.push_back({.begin = borders[k], .end = borders[k + 1], .noise_n = 0.0});
-    const bool after_rupture = std::find(peaks.begin(), peaks.end(), borders[k] - 1) != peaks.end();
-    const double reference = after_rupture ? samples.motion[borders[k]].penetration : 0.0;
-    for (std::size_t i = borders[k]; i < borders[k + 1]; ++i) parts.motion[i].penetration -= reference;
-  }
-  return parts;
-}
-
-/// Force over speed at the ruptures: slope and intercept, or the mean where all are alike.
-std::pair<double, double> threshold_line(const Samples& samples, const std::vector<std::size_t>& peaks) {
-  double n = 0.0, s = 0.0, ss = 0.0, f = 0.0, sf = 0.0;
-  for (const std::size_t i : peaks) {
-    const double speed = std::abs(samples.motion[i].velocity);
-    n += 1.0;
-    s += speed;
-    ss += speed * speed;
-    f += samples.force[i];
-    sf += speed * samples.force[i];
-  }
-  const double spread = ss - s * s / n;
-  const double slope = n > 2.0 && spread > 1e-4 * ss ? (sf - s * f / n) / spread : 0.0;
-  return {slope, (f - slope * s) / n};
-}
-
-/// The fracture law that goes best with one depth of yielding.
-class FractureSearch {
+/// Searches among samples, from one place.
+class FractureDescent {
  public:
-  FractureSearch(const Problem& problem, const RobustLoss& loss) : problem_(problem), loss_(loss) {
+  FractureDescent(const Problem& problem, const Samples& samples, const Weights& weights,
+                  const RobustLoss& loss)
+      : problem_(problem),
+        samples_(samples),
+        coordinates_(problem),
+        objective_(problem, samples, weights, loss) {}
+
+  [[nodiscard]] Standing place(const Eigen::VectorXd& at) const {
+    return {.at = at, .squares = objective_.squares(at)};
+  }
+  [[nodiscard]] int iterations() const { return iterations_; }
+
+  /// Depth and crack step over rows that break by one or the other, looked at over a range that shrinks; in
+  /// between all four descend.
+  void step_over_rows(Standing& place, double range, int fewest_rounds, double worth_a_round) {
+    constexpr int most_rounds = 8;
+    for (int round = 0; round < most_rounds; ++round, range *= 0.25) {
+      const double before = place.squares;
+      descend(place);
+      look_along(place, range, [](Eigen::VectorXd& at, double way) { at[Coordinates::depth] += way; });
+      look_along(place, range, [this](Eigen::VectorXd& at, double way) { deeper_at_one_force(at, way); });
+      look_along(place, range, [](Eigen::VectorXd& at, double way) { at[Coordinates::crack] += way; });
+      if (round + 1 >= fewest_rounds && !(place.squares < (1.0 - worth_a_round) * before)) break;
+    }
+  }
+  void descend(Standing& place) {
+    constexpr int most_steps = 8;
+    take(place, descend_by_steps(objective_, place.at, coordinates_.bounds(), most_steps));
+  }
+  /// Goes on to the least squares among the places where the same rows break, and over to the next such
+  /// places where they leave less.
+  void settle(Standing& place) {
+    constexpr int most_cells = 6;
+    constexpr int most_steps = 30;
+    constexpr double to_the_end = 1e-10;
+    constexpr double worth_a_cell = 1e-6;  // of the sum of squares
+    constexpr double beyond = 1e-9;
+    for (int i = 0; i < most_cells; ++i) {
+      const FractureCell cell = cell_of(problem_, samples_, coordinates_.values(place.at));
+      const CellObjective in_cell(objective_, cell);
+      Minimum minimum = descend_by_steps(in_cell, in_cell.inside(place.at),
+                                         in_cell.bounds(coordinates_.bounds()), most_steps, to_the_end);
+      minimum.at = in_cell.outside(minimum.at);
+      take(place, minimum);
+      const double within = place.squares;
+      for (const double crack : {cell.crack_from * (1.0 - beyond), cell.crack_to * (1.0 + beyond)}) {
+        if (!(crack > 0.0 && std::isfinite(crack))) continue;
+        const Eigen::VectorXd at = cell.moved_to(place.at, crack);
+        const double squares = objective_.squares(at);
+        if (squares < place.squares) place = {.at = at, .squares = squares};
+      }
+      if (!(place.squares < (1.0 - worth_a_cell) * within)) break;
+    }
+    centre(place);
+  }
+
+ private:
+  void take(Standing& place, const Minimum& minimum) {
+    iterations_ += minimum.iterations;
+    if (minimum.sums.squares <= place.squares) place = {.at = minimum.at, .squares = minimum.sums.squares};
+  }
+  /// A depth of yielding that no force tells, but for which rows break, is taken for the middle of what these
+  /// leave.
+  void centre(Standing& place) const {
+    constexpr double as_good = 1e-12;
+    const FractureCell cell = cell_of(problem_, samples_, coordinates_.values(place.at));
+    if (!(cell.depth_from > 0.0) || std::isinf(cell.depth_to)) return;
+    const double way = std::log(0.5 * (cell.depth_from + cell.depth_to)) - place.at[Coordinates::depth];
+    Eigen::VectorXd at_one_crack = place.at;
+    at_one_crack[Coordinates::depth] += way;
+    Eigen::VectorXd at_one_force = place.at;
+    deeper_at_one_force(at_one_force, way);
+    for (const Eigen::VectorXd& at : {at_one_crack, at_one_force}) {
+      const double squares = objective_.squares(at);
+      if (squares <= (1.0 + as_good) * place.squares + as_good * as_good) {
+        place = {.at = at, .squares = squares};
+        return;
+      }
+    }
+  }
+  template <typename Move>
+  void look_along(Standing& place, double range, Move&& move) const {
+    constexpr int steps = 8;
+    const Eigen::VectorXd from = place.at;
+    for (int i = -steps; i <= steps; ++i) {
+      Eigen::VectorXd at = from;
+      move(at, range * i / steps);
+      const double squares = objective_.squares(at);
+      if (squares < place.squares) place = {.at = at, .squares = squares};
+    }
+  }
+  /// Another depth of yielding, and the force of cutting as it was.
+  void deeper_at_one_force(Eigen::VectorXd& at, double way) const {
+    constexpr std::size_t energy = 2;
+    const double before = coordinates_.values(at)[energy];
+    at[Coordinates::depth] += way;
+    at[Coordinates::crack] += std::log(coordinates_.values(at)[energy] / before);
+  }
+
+  const Problem& problem_;
+  const Samples& samples_;
+  FractureCoordinates coordinates_;
+  FractureObjective objective_;
+  int iterations_ = 0;
+};
+
+/// Places to begin at: for each of some depths the exponential before it, with the force of cutting beyond it
+/// or with cracks of several lengths, whichever leaves least.
+class FractureStarts {
+ public:
+  FractureStarts(const Problem& problem, const RobustLoss& loss)
+      : problem_(problem), loss_(loss), coordinates_(problem) {
     const auto given = problem.law_options.find("thickness");
     if (given != problem.law_options.end()) thickness_ = std::get<double>(given->second);
     whole_.law_options = {{"thickness", thickness_}, {"viscous", false}};
@@ -122,115 +175,119 @@ class FractureSearch {
     whole_.runs = problem.runs;
   }
 
-  [[nodiscard]] std::vector<double> values(const Samples& samples, const Weights& weights, double depth) {
+  /// The best few, of depths on a grid and between the neighbours of the best one.
+  [[nodiscard]] std::vector<Standing> of(const Samples& samples, const Weights& weights) const {
+    const FractureDescent descent(problem_, samples, weights, loss_);
+    const double step = samples.most / (depths + 1);
+    std::vector<Standing> places;
+    const auto squares_at = [&](double depth) {
+      places.push_back(best_at(depth, descent, samples, weights));
+      return places.back().squares;
+    };
+    double least = std::numeric_limits<double>::infinity();
+    double best = 2.0 * step;
+    for (int i = 2; i <= depths; ++i) {
+      const double squares = squares_at(i * step);
+      if (squares < least) best = i * step;
+      least = std::min(least, squares);
+    }
+    constexpr double golden = 0.6180339887498949;
+    double low = best - step;
+    double high = best + step;
+    double a = high - golden * (high - low);
+    double b = low + golden * (high - low);
+    double at_a = squares_at(a);
+    double at_b = squares_at(b);
+    for (int i = 0; i < refinements; ++i) {
+      if (at_a <= at_b) {  // between two samples all depths are alike: the least of them is before the break
+        high = b;
+        b = std::exchange(a, b - golden * (b - low));
+        at_b = std::exchange(at_a, squares_at(a));
+      } else {
+        low = a;
+        a = std::exchange(b, a + golden * (high - a));
+        at_a = std::exchange(at_b, squares_at(b));
+      }
+    }
+    std::erase_if(places, [](const Standing& place) { return !std::isfinite(place.squares); });
+    std::ranges::sort(places, {}, &Standing::squares);
+    std::vector<Standing> apart;  // those next to a better one lead where it does
+    for (Standing& place : places) {
+      const auto is_near = [&](const Standing& other) {
+        return std::abs(std::exp(other.at[Coordinates::depth]) - std::exp(place.at[Coordinates::depth])) <
+               0.9 * step;
+      };
+      if (apart.size() < refined && std::ranges::none_of(apart, is_near)) apart.push_back(std::move(place));
+    }
+    return apart;
+  }
+
+ private:
+  [[nodiscard]] Standing best_at(double depth, const FractureDescent& descent, const Samples& samples,
+                                 const Weights& weights) const {
     const Solution elastic = search(whole_, samples, before_depth(samples, weights, depth), {},
                                     {.loss = loss_, .function_tolerance = 1e-10});
-    ++iterations_;
     if (elastic.values.empty()) return {};
     const double amplitude = elastic.values[0][0];
     const double exponent = elastic.values[0][1];
     const models::Exponential<double> tissue{
         .amplitude = amplitude, .exponent = exponent, .thickness = thickness_};
-    const double energy = tissue.stored_energy(depth);
-    std::vector<double> all{amplitude, exponent, energy,
-                            force_of_cutting(samples, weights, depth) / blade_width_m, blade_width_m};
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      all[i] = std::clamp(all[i], problem_.parameters[i].lower, problem_.parameters[i].upper);
+    Eigen::VectorXd at =
+        Eigen::Vector4d(std::log(amplitude), std::log(exponent), std::log(depth),
+                        std::log(tissue.stored_energy(depth) / force_of_cutting(samples, weights, depth)));
+    at = at.cwiseMax(coordinates_.bounds().lower).cwiseMin(coordinates_.bounds().upper);
+    Standing best = descent.place(at);
+    for (int j = 0; j < cracks; ++j) {
+      at[Coordinates::crack] = std::log(depth) + std::log(samples.most / depth) * (j + 0.5) / cracks;
+      Standing other = descent.place(at);
+      if (other.squares < best.squares) best = std::move(other);
     }
-    return all;
+    return best;
   }
-  [[nodiscard]] double squares(const Samples& samples, const Weights& weights, double depth) {
-    const auto all = values(samples, weights, depth);
-    return all.empty() ? std::numeric_limits<double>::infinity()
-                       : squares_of(problem_, samples, weights, all, loss_);
-  }
-  [[nodiscard]] double yield_depth(const std::vector<double>& all) const {
-    return models::Fracture<double>::make(all, problem_.law_options).yield_depth();
-  }
-  [[nodiscard]] int iterations() const { return iterations_; }
 
- private:
   const Problem& problem_;
   const RobustLoss& loss_;
+  FractureCoordinates coordinates_;
   Problem whole_{.model = "exponential"};
   double thickness_ = 0.1;
-  int iterations_ = 0;
 };
 
 }  // namespace
 
 Solution solve_fracture(const Problem& problem, const Samples& samples, const Weights& weights,
-                        const Values& near, const RobustLoss& loss) {
+                        const Values& near, const SearchOptions& options) {
+  constexpr double between_depths = 0.25;  // of a logarithm
+  constexpr double beside = 0.02;
+  constexpr double much_of_the_squares = 1e-2;  // that a round more is worth
+  constexpr double little_of_the_squares = 1e-3;
+  constexpr double only_an_error = 1e-9;  // tolerances above this ask for no more
   if (!(samples.most > 0.0)) return {.values = {}, .message = "the tool never met the tissue"};
-  FractureSearch search(problem, loss);
-  const Samples few = thinned(samples, 1000);
+  const FractureCoordinates coordinates(problem);
+  const Samples few = thinned(samples, few_rows);
   const Weights light = thinned_weights(samples, weights, few);
-  const double step = samples.most / (depths + 1);
-  double at = near.empty() ? 2.0 * step : search.yield_depth(near[0]);
+  FractureDescent on_few(problem, few, light, options.loss);
+  std::vector<Standing> places;
   if (near.empty()) {
-    double least = search.squares(few, light, at);
-    for (int i = 3; i <= depths; ++i) {
-      const double squares = search.squares(few, light, i * step);
-      if (squares < least) {
-        least = squares;
-        at = i * step;
-      }
-    }
+    places = FractureStarts(problem, options.loss).of(few, light);
+  } else {
+    places.push_back(on_few.place(coordinates.at(near[0])));
   }
-  constexpr double golden = 0.6180339887498949;
-  double low = at - step;
-  double high = at + step;
-  double a = high - golden * (high - low);
-  double b = low + golden * (high - low);
-  double at_a = search.squares(few, light, a);
-  double at_b = search.squares(few, light, b);
-  for (int i = 0; i < refinements; ++i) {
-    if (at_a <= at_b) {  // between two samples all depths are alike: the least of them is before the break
-      high = b;
-      b = std::exchange(a, b - golden * (b - low));
-      at_b = std::exchange(at_a, search.squares(few, light, a));
-    } else {
-      low = a;
-      a = std::exchange(b, a + golden * (high - a));
-      at_a = std::exchange(at_b, search.squares(few, light, b));
-    }
+  if (places.empty()) return {.values = {}, .message = "too few samples before the tissue yields"};
+  for (Standing& place : places)
+    on_few.step_over_rows(place, near.empty() ? between_depths : beside, 3, much_of_the_squares);
+  Standing best = *std::ranges::min_element(places, {}, &Standing::squares);
+  FractureDescent on_all(problem, samples, weights, options.loss);
+  best = on_all.place(best.at);
+  if (options.function_tolerance > only_an_error) {
+    on_all.descend(best);
+  } else {
+    on_all.step_over_rows(best, beside, 2, little_of_the_squares);
+    on_all.settle(best);
   }
-  const auto best = search.values(samples, weights, at_a <= at_b ? a : b);
-  if (best.empty()) return {.values = {}, .message = "too few samples before the tissue yields"};
-  return {.values = Values(problem.runs, best),
+  return {.values = Values(problem.runs, coordinates.values(best.at)),
           .converged = true,
-          .iterations = search.iterations(),
-          .message = "least squares over the depth of yielding"};
-}
-
-Solution solve_ruptures(const Problem& problem, const Samples& samples, const Weights& weights) {
-  const double largest = *std::max_element(samples.force.begin(), samples.force.end());
-  std::vector<std::size_t> peaks;
-  for (const Run& run : samples.runs) {
-    const auto more = ruptures_in(samples, run, least_peak_share * largest);
-    peaks.insert(peaks.end(), more.begin(), more.end());
-  }
-  std::erase_if(peaks, [&](std::size_t i) { return !(weights[i] > 0.0); });
-  if (peaks.size() < 2)
-    return {.values = {}, .message = "the force never drops as it does where tissue ruptures"};
-  const Samples parts = between_ruptures(samples, peaks);
-  Problem element{.model = "kelvin", .runs = parts.runs.size()};
-  element.parameters = models::Law::parameters("kelvin");
-  element.free.assign(3, true);
-  element.own.assign(3, false);
-  Solution solution = search(element, parts, weights, {});
-  if (solution.values.empty()) return solution;
-  std::vector<double> values = solution.values[0];
-  const auto [slope, constant] = threshold_line(samples, peaks);
-  for (std::size_t i = values.size(); i < problem.parameters.size(); ++i) {
-    const std::string& name = problem.parameters[i].name;
-    values.push_back(name.starts_with("per_speed")                                            ? slope
-                     : name.starts_with("constant")                                           ? constant
-                     : name.ends_with("width[0]") || name.find("_width") != std::string::npos ? 1.0
-                                                                                              : 0.0);
-  }
-  solution.values = Values(problem.runs, values);
-  return solution;
+          .iterations = on_few.iterations() + on_all.iterations(),
+          .message = "least squares over the rows that break"};
 }
 
 }  // namespace kerf::fitting

@@ -4,10 +4,12 @@
 
 namespace kerf::fitting {
 
-/// For each depth at which the tissue may have yielded the exponential before it and the constant force after
-/// it; the depth of least squares wins, on a grid first and then between its neighbours.
+/// Least squares of the law's own step, cracks that run ahead of the tool and further fractures and all.
+/// Begins with the exponential before each depth at which the tissue may have yielded, and the force of
+/// cutting or a crack of some length after it; descends where no row changes sides, and looks beside for
+/// other rows that break (fracture_events.h).
 [[nodiscard]] Solution solve_fracture(const Problem& problem, const Samples& samples, const Weights& weights,
-                                      const Values& near, const RobustLoss& loss);
+                                      const Values& near, const SearchOptions& options);
 
 /// Ruptures are drops of the force by more than half of it within 20 ms while the tool goes on. Between them
 /// the Kelvin element is fitted as runs of their own; their forces over the speed are the threshold, a line.

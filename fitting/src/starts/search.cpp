@@ -168,10 +168,18 @@ Solution search(const Problem& problem, const Samples& samples, const Weights& w
       return solve_tables(problem, samples, weights, options.loss);
     case models::Search::segments:
       return solve_segments(problem, samples, weights, options.loss);
-    case models::Search::threshold:
-      return solve_threshold(problem, samples, weights);
+    case models::Search::threshold: {
+      Solution trained = solve_threshold(problem, samples, weights);
+      // One rule is linear. Of more, least squares on all samples would take seconds along valleys that
+      // nobody feels.
+      const bool one_rule = std::get<double>(problem.law_options.at("memberships")) == 1.0;
+      if (!one_rule || trained.values.empty() || problem.polish == Polish::brief) return trained;
+      Solution polished = solve_from(problem, samples, weights, trained.values, options);
+      polished.iterations += trained.iterations;
+      return polished;
+    }
     case models::Search::fracture:
-      return solve_fracture(problem, samples, weights, near, options.loss);
+      return solve_fracture(problem, samples, weights, near, options);
     case models::Search::ruptures:
       return solve_ruptures(problem, samples, weights);
     case models::Search::descent:

@@ -8,6 +8,7 @@
 #include "infinite.h"
 #include "tables.h"
 #include "uncertainty/arms.h"
+#include "uncertainty/events.h"
 #include "uncertainty/limits.h"
 #include "uncertainty/linearise.h"
 #include "uncertainty/profile.h"
@@ -155,6 +156,7 @@ class Estimation {
     const Eigen::VectorXd at = coordinates_of(inner, solution_.values);
     Uncertainty uncertainty;
     std::vector<Limits> limits;
+    bool none = false;
     if (options_.intervals == Intervals::white) {
       uncertainty = as_of_white_noise(objective, at, solution_, weights_, options_.confidence);
       limits = wald_limits_of(inner, at, uncertainty);
@@ -164,8 +166,13 @@ class Estimation {
       uncertainty = uncertainty_of(linear, options_.confidence);
       limits = limits_within(inner, objective, at, linear, uncertainty);
       result_.covariance_by = uncertainty.by_cycles ? CovarianceBy::cycles : CovarianceBy::residuals;
+      none = inner.facts().search == models::Search::threshold && !is_least(linear, uncertainty);
+      if (inner.facts().search == models::Search::fracture && inner.coordinates() == problem_.coordinates())
+        events_ = limits_by_events(inner, samples_, weights_, solution_, loss_, linear, uncertainty,
+                                   options_.confidence);
     }
     result_.correlation_time = std::min(uncertainty.correlation_time, static_cast<double>(samples_.size()));
+    if (none) return take_none(inner);
     take(inner, uncertainty, limits);
     if (options_.profile) {
       result_.profiles =
@@ -199,12 +206,15 @@ class Estimation {
                                                ? std::sqrt(uncertainty.covariance(diagonal, diagonal))
                                                : infinite,
                               .limits = limits[k]});
+      if (!std::isnan(error_by_events(k))) known_.known.back() = {events_.std_error[k], events_.limits[k]};
       result_.searched.push_back(name_of(known_.of[k]));
       logarithmic.push_back(inner.parameters[known_.of[k].parameter].scale == models::Scale::logarithmic);
     }
     result_.correlation.assign(uncertainty.correlation.data(),
                                uncertainty.correlation.data() + uncertainty.correlation.size());
     for (const UnidentifiableDirection& unidentifiable : uncertainty.unidentifiable) {
+      const auto told = [&](const auto& part) { return std::isfinite(error_by_events(part.first)); };
+      if (std::ranges::all_of(unidentifiable.parts, told)) continue;
       std::vector<std::string> names;
       for (const auto& [place, share] : unidentifiable.parts) names.push_back(result_.searched[place]);
       std::string warning = names.size() == 1 ? hardly_known(names[0], limits[unidentifiable.parts[0].first])
@@ -212,6 +222,28 @@ class Estimation {
       unknowns_.push_back({std::move(names), std::move(warning)});
     }
     warn_of_zeros(inner);
+  }
+
+  /// Whether the solution is where the sum of squares is least, to a small share of a standard error.
+  [[nodiscard]] static bool is_least(const Linearisation& linear, const Uncertainty& uncertainty) {
+    constexpr double negligible = 0.02;  // of the rise in one standard error
+    const Eigen::VectorXd score = linear.jacobian.transpose() * linear.residuals;
+    const double promise = score.dot(solve_normal(gram(linear.jacobian), score));
+    const double unit = linear.residuals.squaredNorm() / std::max(1.0, uncertainty.effective_samples);
+    return promise <= negligible * unit;
+  }
+
+  /// Estimates that are not those of least squares vary otherwise than these do: by how much is not known.
+  void take_none(const Problem& inner) {
+    known_.of = inner.all();
+    known_.known.assign(known_.of.size(), Known{.std_error = infinite, .limits = {}});
+    unknowns_.push_back(
+        {{}, "the memberships were trained on means, and are not those of least squares: no intervals"});
+  }
+
+  /// What the rows that break say of a coordinate; NaN where they say nothing.
+  [[nodiscard]] double error_by_events(std::size_t k) const {
+    return k < events_.std_error.size() ? events_.std_error[k] : std::numeric_limits<double>::quiet_NaN();
   }
 
   /// A parameter that may as well be zero is said to be so, unless more than that is said of it.
@@ -304,6 +336,7 @@ class Estimation {
   const FitOptions& options_;
   const RobustLoss& loss_;
   KnownCoordinates known_;
+  ByEvents events_;
   std::vector<Unknown> unknowns_;
 };
 

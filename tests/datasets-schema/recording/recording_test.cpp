@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <kerf/schema/recording.h>
+#include <kerf/schema/validate.h>
 
 #include "datasets-schema/recording/same_recording.h"
 #include "datasets-schema/recording/sample_recording.h"
@@ -66,6 +67,17 @@ TEST(Recording, KeepsWhatIsSaidOfItsCycles) {
   recording.cycle_flags.reset();
   write_recording(folder / "r.h5", recording);
   EXPECT_FALSE(read_recording(folder / "r.h5").cycle_flags);
+}
+
+TEST(Recording, KeepsWhatAPersonChangedOfItsCycles) {
+  const test::TemporaryFolder folder;
+  auto recording = test::sample_recording();
+  recording.cycle_edits = test::sample_cycle_changes();
+  write_recording(folder / "r.h5", recording);
+  EXPECT_TRUE(validate(folder / "r.h5").empty());
+  const Recording read = read_recording(folder / "r.h5");
+  ASSERT_EQ(read.cycle_edits.size(), 3U);
+  test::expect_same(read, recording);
 }
 
 TEST(Recording, MayHaveNoRows) {

@@ -103,12 +103,29 @@ inline void expect_same_cycles(const schema::Cycles& found, const schema::Cycles
   }
 }
 
+inline void expect_same_edits(const std::vector<schema::CycleChange>& found,
+                              const std::vector<schema::CycleChange>& expected) {
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    EXPECT_EQ(found[i].edit, expected[i].edit);
+    EXPECT_EQ(found[i].cycle, expected[i].cycle);
+    EXPECT_EQ(found[i].phase, expected[i].phase);
+    EXPECT_EQ(found[i].row_before, expected[i].row_before);
+    EXPECT_EQ(found[i].row_after, expected[i].row_after);
+    EXPECT_EQ(found[i].time, expected[i].time);
+    EXPECT_EQ(found[i].author, expected[i].author);
+    EXPECT_EQ(found[i].kind, expected[i].kind);
+    EXPECT_EQ(found[i].text, expected[i].text);
+  }
+}
+
 inline void expect_same(const schema::Recording& found, const schema::Recording& expected) {
   expect_same_header(found.header, expected.header);
   expect_same_samples(found, expected);
   expect_same_events(found.events, expected.events);
   ASSERT_EQ(found.cycles.has_value(), expected.cycles.has_value());
   if (found.cycles) expect_same_cycles(*found.cycles, *expected.cycles);
+  expect_same_edits(found.cycle_edits, expected.cycle_edits);
 }
 
 }  // namespace kerf::test

@@ -72,4 +72,30 @@ inline schema::Recording sample_recording(std::size_t rows = 5) {
   return recording;
 }
 
+/// What a person changed of the cycles in two edits.
+inline std::vector<schema::CycleChange> sample_cycle_changes() {
+  const schema::CycleChange by_anna{.edit = 1,
+                                    .cycle = 1,
+                                    .phase = 3,
+                                    .row_before = 1,
+                                    .row_after = 2,
+                                    .time = "2026-02-01T09:00:00Z",
+                                    .author = "Anna Ω",
+                                    .kind = "begin",
+                                    .text = "cycle 1: closing begins at 0.002 s (row 2)"};
+  schema::CycleChange dropped = by_anna;
+  dropped.phase = 0;
+  dropped.row_before = dropped.row_after = -1;
+  dropped.kind = "left_out";
+  dropped.text = "cycle 1 left out: it slipped";
+  schema::CycleChange split = dropped;
+  split.edit = 2;
+  split.row_after = 3;
+  split.time = "2026-02-02T09:00:00Z";
+  split.author = "Bo";
+  split.kind = "split";
+  split.text = "cycle 1 split";
+  return {by_anna, dropped, split};
+}
+
 }  // namespace kerf::test

@@ -10,8 +10,9 @@
 #include "fuzz/target.h"
 #include "import/column_map.h"
 #include "import/import.h"
-#include "import/text_layout.h"
-#include "import/text_table.h"
+#include "import/suggest/suggested_map.h"
+#include "import/text/text_layout.h"
+#include "import/text/text_table.h"
 
 namespace kerf::fuzz {
 namespace {
@@ -49,8 +50,8 @@ void fuzz_table(std::string_view text, const TextLayout& layout) {
 }
 
 /// The map that is suggested is one, and the options beside it.
-ImportOptions suggested(const TextLayout& layout) {
-  const std::string suggestion = bench::suggest_map(layout);
+ImportOptions suggested(const TextLayout& layout, std::string_view text) {
+  const std::string suggestion = bench::suggest_map(layout, text);
   const auto begin = suggestion.find('\'') + 1;
   ImportOptions options;
   options.map = bench::parse_map(std::string_view(suggestion).substr(begin, suggestion.rfind('\'') - begin));
@@ -99,7 +100,7 @@ void fuzz_import(Bytes bytes) {
   (void)bench::describe_columns(layout, text);
   fuzz_table(text, layout);
 
-  ImportOptions options = suggested(layout);
+  ImportOptions options = suggested(layout, text);
   const bool has_map = is_taken<std::invalid_argument>([&] {
     if ((bits & 4U) != 0) options.map = bench::parse_map(how);
   });

@@ -16,6 +16,7 @@
 #include "regress/compare.h"
 #include "regress/path.h"
 #include "regress/stored/conflict.h"
+#include "units/units.h"
 
 namespace kerf::bench {
 namespace {
@@ -58,7 +59,7 @@ std::optional<SampledMotion> motion_of(const RegressionCase& about, const schema
   return {};
 }
 
-/// The sum of force times step [J], with the force in the middle of the step.
+/// The sum of force times step [work_unit()], with the force in the middle of the step.
 double work_of(std::span<const double> force, const SampledMotion& motion, std::size_t axis) {
   double work = 0.0;
   for (std::size_t tick = 1; tick < force.size(); ++tick)
@@ -67,8 +68,9 @@ double work_of(std::span<const double> force, const SampledMotion& motion, std::
   return work;
 }
 
+/// `position_unit` of its axis, where the motion is known.
 std::string channel_lines(const compare::Channel& channel, const std::optional<SampledMotion>& motion,
-                          std::size_t axis) {
+                          std::size_t axis, const std::string& position_unit) {
   double peak = 0.0;
   double squares = 0.0;
   for (const double force : channel.value) {
@@ -77,10 +79,11 @@ std::string channel_lines(const compare::Channel& channel, const std::optional<S
   }
   const auto rows = static_cast<double>(std::max<std::size_t>(channel.value.size(), 1));
   std::string text = summary_line(
-      channel.name,
-      fmt::format("peak {0:.6g} {2}, RMS {1:.6g} {2}, work {3}", peak, std::sqrt(squares / rows),
-                  channel.unit,
-                  motion ? fmt::format("{:.6g} J", work_of(channel.value, *motion, axis)) : "unknown"));
+      channel.name, fmt::format("peak {0:.6g} {2}, RMS {1:.6g} {2}, work {3}", peak,
+                                std::sqrt(squares / rows), channel.unit,
+                                motion ? fmt::format("{:.6g} {}", work_of(channel.value, *motion, axis),
+                                                     work_unit(channel.unit, position_unit))
+                                       : "unknown"));
   if (!motion) return text;  // nor is the rate known
   const double rate_hz = 1.0 / motion->period_s.back();
   for (const compare::BandLevel& band : compare::band_levels(channel.value, rate_hz, channel.unit))
@@ -103,7 +106,7 @@ std::string block_of(const RegressionCase* about, const schema::StoredForces& st
   text += summary_line("forces", forces_sha256(stored));
   const compare::Series series = series_of(stored);
   for (std::size_t i = 0; i < series.channels.size(); ++i)
-    text += channel_lines(series.channels[i], motion, i);
+    text += channel_lines(series.channels[i], motion, i, motion ? axes_of(*about).at(i).position_unit : "");
   return text;
 }
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "import/column_map.h"
-#include "import/text_layout.h"
+#include "import/text/text_layout.h"
 #include "poses/orientation_form.h"
 
 namespace kerf::bench {

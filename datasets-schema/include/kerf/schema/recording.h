@@ -160,6 +160,25 @@ struct CycleFlags {
   std::vector<CycleFlag> flags;
 };
 
+/// One change that a person made to the cycles by hand; those that were saved together have one number.
+/// Rows and cycles are numbered as they were when it was saved.
+struct CycleChange {
+  std::uint32_t edit = 1;        ///< number of the edit that it is part of, from 1
+  std::uint32_t cycle = 0;       ///< 0: of all of them
+  std::uint8_t phase = 0;        ///< whose boundary it is, as Phase has it; 0: of none
+  std::int64_t row_before = -1;  ///< where the boundary was; -1: there was none
+  std::int64_t row_after = -1;   ///< where it is since; -1: there is none
+  std::string time;              ///< when it was saved: ISO 8601, UTC
+  std::string author;            ///< who edited
+  std::string kind;              ///< one of cycle_change_kinds
+  std::string text;              ///< in a sentence, with times and reasons
+};
+
+/// Found anew by other settings; a boundary moved; one cycle made two, two made one, several made several;
+/// left out, taken whatever is wrong with it, and neither any more.
+inline constexpr std::array<std::string_view, 9> cycle_change_kinds{
+    "found", "begin", "end", "split", "merged", "divided", "left_out", "taken", "as_found"};
+
 /// A whole recording in memory, one vector a dataset. Arrays of N x D are row-major. Time, tick, position and
 /// velocity have N rows; any other may be empty and is then left out of the file.
 struct Recording {
@@ -180,6 +199,7 @@ struct Recording {
   std::vector<Event> events;
   std::optional<Cycles> cycles;
   std::optional<CycleFlags> cycle_flags;  ///< none: nobody has looked
+  std::vector<CycleChange> cycle_edits;   ///< in `/cycle_edits`, the oldest first; empty: nobody edited them
 
   [[nodiscard]] std::size_t rows() const noexcept { return time.size(); }
   [[nodiscard]] std::size_t dimensions() const noexcept { return axes.size(); }

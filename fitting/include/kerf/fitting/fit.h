@@ -83,7 +83,12 @@ struct FitOptions {
   /// The force that a loop gives with a law at each sample of a recording, by its velocity and its latency;
   /// none: laws are judged as fitted.
   std::function<std::vector<double>(const models::Law& law, std::size_t recording)> render;
+  /// Called when a part of the fit is done, by the thread that did it: parts_of_a_fit() times at most.
+  std::function<void()> part_done;
 };
+
+/// The law itself, its intervals, and each fold that is held out.
+[[nodiscard]] std::size_t parts_of_a_fit(const FitOptions& options) noexcept;
 
 /// Where an interval comes from; none: the data set no limit on either side, or nothing was asked.
 enum class IntervalBy : std::uint8_t { none, held, wald, profile };

@@ -65,11 +65,11 @@ struct Fracture {
 
   struct State {
     Mode mode = Mode::free;
-    Signal<T> surface = 0.0;  ///< penetration at which tissue is met [m]
-    T stored{0.0};            ///< U [J]
-    T work{0.0};              ///< sum of dWe, done by the tool [J]
-    T crack_energy{0.0};      ///< sum of dWs, spent on the crack [J]
-    T crack_length{0.0};      ///< a [m]
+    T surface{0.0};       ///< penetration at which tissue is met [m]
+    T stored{0.0};        ///< U [J]
+    T work{0.0};          ///< sum of dWe, done by the tool [J]
+    T crack_energy{0.0};  ///< sum of dWs, spent on the crack [J]
+    T crack_length{0.0};  ///< a [m]
 
     /// What the force goes on from, by name: the books are kept beside it.
     template <typename Visit>
@@ -105,6 +105,8 @@ struct Fracture {
 
   /// Force while the crack grows, Jc w [N].
   [[nodiscard]] T cutting_force() const { return toughness * width; }
+  /// How far a crack runs that all of Uy makes [m].
+  [[nodiscard]] T crack_of_a_fracture() const { return yield_energy / cutting_force(); }
   /// Depth at which the stored energy reaches Uy [m].
   [[nodiscard]] T yield_depth() const {
     using std::log1p;
@@ -122,7 +124,7 @@ struct Fracture {
     if (state.mode == Mode::cutting && goes_on(state, motion)) {
       if (x < state.surface || motion.velocity <= 0.0) return T(0.0);  // behind the tip, or on the way back
       grow(state, cutting_force() * (x - state.surface));
-      state.surface = x;
+      state.surface = T(x);
       return cutting_force();
     }
     if (state.mode == Mode::cutting) state.mode = Mode::free;
@@ -136,7 +138,7 @@ struct Fracture {
   }
   T deform(State& state, Signal<T> x) const noexcept {
     using std::expm1;
-    const Signal<T> depth = x - state.surface;
+    const T depth = x - state.surface;
     if (depth <= 0.0) {
       state.work = state.work - state.stored;
       state.stored = T(0.0);
@@ -155,11 +157,12 @@ struct Fracture {
     state.work = state.work - state.stored;  // grow() enters all of Uy, as crack
     state.stored = T(0.0);
     grow(state, yield_energy);
-    const Signal<T> yielded = state.surface + value_of(yield_depth());
-    state.surface = greater(yielded, state.surface + value_of(yield_energy / cutting_force()));
+    const T yielded = state.surface + yield_depth();
+    const T tip = state.surface + crack_of_a_fracture();
+    state.surface = greater(yielded, tip);
     if (x > state.surface) {
       grow(state, cutting_force() * (x - state.surface));
-      state.surface = x;
+      state.surface = T(x);
     }
     state.mode = Mode::fracture;
     return T(0.0);
@@ -168,13 +171,6 @@ struct Fracture {
     state.work = state.work + energy;
     state.crack_energy = state.crack_energy + energy;
     state.crack_length = state.crack_length + energy / cutting_force();
-  }
-  static Signal<T> value_of(const T& number) noexcept {
-    if constexpr (requires { number.a; }) {
-      return number.a;  // a dual number: where the tip stands has no derivative across the fracture
-    } else {
-      return number;
-    }
   }
 };
 

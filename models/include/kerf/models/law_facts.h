@@ -44,7 +44,7 @@ enum class Search : std::uint8_t {
   tables,     ///< linear in all of them: solved at once
   segments,   ///< knots and forces on them: breakpoints by dynamic programming
   threshold,  ///< memberships of a FuzzySurface, trained on means over depth and speed
-  fracture,   ///< the exponential before each depth where tissue may have yielded, the constant after it
+  fracture,   ///< over the cells of depth and crack within which the same samples break
   ruptures    ///< a Kelvin element between the drops of the force, a FuzzySurface at them
 };
 

@@ -1,10 +1,12 @@
 #include "fits/fit_recording.h"
 
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <span>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "fits/fit_files.h"
@@ -60,6 +62,22 @@ TEST(FitRecording, LeavesOutOneRowForAPositionThatIsNoNumberAndNotItsNeighbours)
 }
 
 // Floor and rendering are found beside the fits, and the rows are let go of before.
+TEST(FitRecording, CountsEveryPartOfEveryLawAsItIsDone) {
+  FitRecordingOptions options = kelvin_only();
+  options.models = {"kelvin", "scissors_analytic", "maxwell"};  // the second one is for angles
+  options.fit.folds = 3;
+  std::atomic<std::size_t> done{0};
+  options.done = &done;
+  std::vector<std::size_t> seen;
+  options.fit.part_done = [&] { seen.push_back(done); };
+  const RecordingFit fit = fit_recording(punch(), options);
+  ASSERT_EQ(fit.laws.size(), 2U);
+  // Each law by itself, its intervals and its three folds; of a law that is refused all at once.
+  EXPECT_THAT(seen, testing::ElementsAre(1, 2, 3, 4, 5, 11, 12, 13, 14, 15));
+  EXPECT_EQ(steps_of(options), 16U) << "and what is found of all laws together";
+  EXPECT_EQ(done, 16U);
+}
+
 TEST(FitRecording, IsTheSameOnOneThreadAndOnSeveral) {
   const schema::Recording whole = punch();
   const auto fitted_on = [&whole](std::size_t threads) {

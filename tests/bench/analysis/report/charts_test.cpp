@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <regex>
+#include <stdexcept>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -39,6 +40,31 @@ TEST(ReportCharts, TheTimeAxisEndsWithTheRecording) {
   const Chart chart = force_chart(recording, schema::RowsInMemory(recording), 0);
   EXPECT_EQ(chart.x_range.begin, recording.time.front());
   EXPECT_EQ(chart.x_range.end, recording.time.back());
+}
+
+const Curve& curve_named(const Chart& chart, const std::string& label) {
+  const auto found = std::ranges::find(chart.curves, label, &Curve::label);
+  if (found == chart.curves.end()) throw std::out_of_range(label);
+  return *found;
+}
+
+// As in the page: tests/bench/studio/page/convention_pages.mjs.
+TEST(ReportCharts, DrawClosingInBlueAndOpeningInOrangeToRed) {
+  schema::Recording recording = test::punch({.seconds = 8.0});
+  recording.cycles = find_cycles(recording, {});
+  const schema::RowsInMemory rows(recording);
+  const Chart position = position_chart(recording, rows, 0);
+  for (const schema::PhaseSpan& span : recording.cycles->phases) {
+    if (span.phase != schema::Phase::closing && span.phase != schema::Phase::opening) continue;
+    const auto band = std::ranges::find(position.bands, recording.time[span.begin], &Band::begin);
+    ASSERT_NE(band, position.bands.end());
+    EXPECT_EQ(band->colour, span.phase == schema::Phase::closing ? Colour::blue : Colour::orange);
+  }
+  const Chart loops = loop_chart(recording, rows, 0);
+  EXPECT_EQ(curve_named(loops, "closing").colour, Colour::sky);
+  EXPECT_EQ(curve_named(loops, "closing, mean").colour, Colour::blue);
+  EXPECT_EQ(curve_named(loops, "opening").colour, Colour::orange);
+  EXPECT_EQ(curve_named(loops, "opening, mean").colour, Colour::vermillion);
 }
 
 TEST(ReportCharts, OfManyCyclesSomeAreDrawnAsTheyRanAndNotAllAsStraightLines) {

@@ -43,6 +43,15 @@ TEST(CycleSection, SaysOfAFlaggedCycleWhyItDoesNotCount) {
   EXPECT_THAT(html, HasSubstr("of 2026-01-02T03:04:05Z by kerf test; in contact beyond 0.05 N"));
 }
 
+TEST(CycleSection, CallsWorkAnEnergyOnlyWhereItIsOne) {
+  schema::Recording recording = in_cycles();
+  EXPECT_THAT(section(recording), HasSubstr("closing work [J]"));
+  recording.axes[0].position_unit = "rad";
+  EXPECT_THAT(section(recording), HasSubstr("closing work [N·rad]"));
+  recording.axes[0].force_unit = "N·m";
+  EXPECT_THAT(section(recording), HasSubstr("closing work [J]"));
+}
+
 TEST(CycleSection, CountsAFlaggedCycleThatSomebodyAccepted) {
   schema::Recording recording = in_cycles();
   keep(recording, {{.cycle = 1, .fault = "outlier", .reason = "far off"},

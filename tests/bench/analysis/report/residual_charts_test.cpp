@@ -73,6 +73,44 @@ TEST(ResidualCharts, TheHistogramHoldsTheSamplesAndTheNormalCurveOverThem) {
   EXPECT_NEAR(area, 50'000.0, 20.0);
 }
 
+/// Every other second out of contact.
+FitView half_judged(std::vector<double>& residual) {
+  FitView view = view_of(residual);
+  view.series.counts.resize(residual.size(), 1);
+  for (std::size_t row = 0; row < residual.size(); ++row) {
+    if (row / 1000 % 2 == 0) continue;
+    view.series.counts[row] = 0;
+    residual[row] = line_break;
+  }
+  return view;
+}
+
+TEST(ResidualCharts, RowsThatNoLawIsJudgedByAreGreyAndInNoNumber) {
+  auto values = coloured(0.0, 10'000);
+  const FitView view = half_judged(values);
+  const FittedTrace trace = trace_of(values, any_law());
+  const Chart over_time = residual_over_time(view, trace, 3.0);
+  ASSERT_EQ(over_time.bands.size(), 5U);
+  EXPECT_DOUBLE_EQ(over_time.bands[0].begin, 1.0);
+  EXPECT_DOUBLE_EQ(over_time.bands[0].end, 2.0);
+  EXPECT_EQ(over_time.bands[0].colour, Colour::grey);
+  const Curve& line = over_time.curves.at(0);
+  for (std::size_t i = 0; i < line.x.size(); ++i)
+    EXPECT_EQ(std::isnan(line.y[i]), static_cast<int>(line.x[i] + 1e-9) % 2 == 1) << line.x[i];
+  for (const Chart& chart :
+       {residual_over_penetration(view, trace, 3.0), residual_over_velocity(view, trace, 3.0)}) {
+    for (const Curve& curve : chart.curves)
+      for (const double y : curve.y) EXPECT_TRUE(std::isfinite(y));
+  }
+  const Chart autocorrelation = residual_autocorrelation(view, trace);
+  EXPECT_NEAR(autocorrelation.horizontal.at(0).at, 1.96 / std::sqrt(5'000.0), 1e-9);
+  EXPECT_NEAR(autocorrelation.curves.at(0).y.at(0), 1.0, 1e-9);
+  const Chart histogram = residual_histogram(view, trace);
+  double samples = 0.0;
+  for (const double count : histogram.curves.at(0).y) samples += count;
+  EXPECT_NEAR(samples, 5'000.0, 10.0) << "four deviations to each side";
+}
+
 TEST(ResidualCharts, TheMeanInBinsFollowsWhatDependsOnThePosition) {
   std::vector<double> values;
   for (std::size_t i = 0; i < 1000; ++i) values.push_back(i % 10 == 9 ? 2.0 : 0.0);

@@ -54,16 +54,6 @@ TEST(ColumnMap, TakesAHeadingWithOrWithoutItsUnit) {
   EXPECT_EQ(columns[3].index, 3U);
 }
 
-TEST(ColumnMap, SuggestsOneByTheUnitsThatAreKnownAndElseByPlace) {
-  EXPECT_EQ(suggest_map(punch), "--map 'time=1[ms],position=4[mm],force=3[gf]'");
-  TextLayout layout{.columns = {{}, {}, {}}};
-  EXPECT_EQ(suggest_map(layout), "--map 'time=1[s],position=2[mm],force=3[N]'");
-  layout.columns.pop_back();
-  EXPECT_EQ(suggest_map(layout), "--map 'position=1[mm],force=2[N]' --rate 100");
-  layout.columns = {{"site", "site", ""}, {"F_N", "F_N", "N"}, {"depth_mm", "depth_mm", "mm"}};
-  EXPECT_EQ(suggest_map(layout), "--map 'position=3[mm],force=2[N]' --rate 100");
-}
-
 TEST(ColumnMap, IsMadeFromColumnsThatAreShownByTheirNumbers) {
   const TextLayout layout{.separator = ',', .columns = {{"t [s]", "t", "s"}, {}}};
   EXPECT_EQ(describe_columns(layout, "0,1\n1,2\n2,3\n3,4\n"),

@@ -1,4 +1,4 @@
-#include "import/text_layout.h"
+#include "import/text/text_layout.h"
 
 #include <stdexcept>
 #include <string>

@@ -88,6 +88,15 @@ TEST(Inspection, OfRowsThatAreNotFiniteAndOfNone) {
   EXPECT_TRUE(json["contact"].is_null());
 }
 
+TEST(Inspection, CallsTheWorkOfACycleAnEnergyOnlyWhereItIsOne) {
+  schema::Recording recording = test::punch({.seconds = 8.0});
+  EXPECT_EQ(inspection_as_json(inspected(recording))["cycles"]["work_unit"], "J");
+  EXPECT_THAT(inspection_lines(inspected(recording)), Contains(HasSubstr("work J")));
+  recording.axes[0].position_unit = "rad";
+  EXPECT_EQ(inspection_as_json(inspected(recording))["cycles"]["work_unit"], "N·rad");
+  EXPECT_THAT(inspection_lines(inspected(recording)), Contains(HasSubstr("work N·rad")));
+}
+
 TEST(InspectVerb, PrintsOneJsonObjectOrATable) {
   const test::TemporaryFolder folder;
   const std::string file = (folder / "r.h5").string();

@@ -12,6 +12,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <kerf/schema/validate.h>
+
 #include "recordings/summary.h"
 
 namespace kerf::bench {
@@ -64,6 +66,12 @@ std::vector<double> comparable(std::vector<double> branch) {
   return branch;
 }
 
+std::vector<std::string> texts_of(const std::vector<schema::CycleChange>& changes) {
+  std::vector<std::string> texts;
+  for (const schema::CycleChange& change : changes) texts.push_back(change.text);
+  return texts;
+}
+
 std::string refusal(const std::function<void()>& work) {
   try {
     work();
@@ -86,7 +94,7 @@ TEST(CycleEdit, ThatChangesNothingLeavesEveryNumberAsItWasFound) {
     EXPECT_EQ(comparable(edited->cycles.opening_mean), comparable(recording.cycles->opening_mean));
     EXPECT_EQ(edited->flagged.size(), 8U);
   }
-  EXPECT_THAT(changes_by(rows, moved(recording, 3, Phase::closing, 0), stored), ElementsAre());
+  EXPECT_THAT(texts_of(changes_by(rows, moved(recording, 3, Phase::closing, 0), stored)), ElementsAre());
 }
 
 TEST(CycleEdit, AveragesTheRowsThatAPhaseHasNow) {
@@ -102,14 +110,14 @@ TEST(CycleEdit, AveragesTheRowsThatAPhaseHasNow) {
   EXPECT_EQ(edited.cycles.contact_position, recording.cycles->contact_position);
 }
 
-TEST(CycleEdit, SaysWhoChangedWhatInTheHistory) {
+TEST(CycleEdit, KeepsWhoChangedWhatAndWhen) {
   const schema::Recording recording = eight_cycles();
   const schema::RowsInMemory rows(recording);
   CycleEdit edit = moved(recording, 3, Phase::closing, 40);
   edit.said = {{.cycle = 5, .fault = "by_hand", .reason = "the tissue slipped"}};
   const EditedCycles edited = edited_cycles(rows, edit, felt);
   const schema::Recording about = with_edit(rows, edit, edited, felt, "Anna Ω");
-  const std::vector<ToldEdit> edits = edits_of(about.header);
+  const std::vector<ToldEdit> edits = edits_of(about);
   ASSERT_EQ(edits.size(), 1U);
   EXPECT_EQ(edits[0].author, "Anna Ω");
   EXPECT_EQ(edits[0].time.size(), std::string("2026-01-31T12:00:00Z").size());
@@ -120,6 +128,19 @@ TEST(CycleEdit, SaysWhoChangedWhatInTheHistory) {
           "cycle 3: closing begins at {:.6g} s (row {}) instead of {:.6g} s (row {}); cycle 5 left out: "
           "the tissue slipped",
           1e-3 * static_cast<double>(row), row, 1e-3 * static_cast<double>(row - 40), row - 40));
+  ASSERT_EQ(about.cycle_edits.size(), 2U);
+  const schema::CycleChange& boundary = about.cycle_edits[0];
+  EXPECT_EQ(boundary.edit, 1U);
+  EXPECT_EQ(boundary.cycle, 3U);
+  EXPECT_EQ(boundary.phase, static_cast<int>(Phase::closing));
+  EXPECT_EQ(boundary.kind, "begin");
+  EXPECT_EQ(boundary.row_before, static_cast<std::int64_t>(row - 40));
+  EXPECT_EQ(boundary.row_after, static_cast<std::int64_t>(row));
+  EXPECT_EQ(about.cycle_edits[1].kind, "left_out");
+  EXPECT_EQ(about.cycle_edits[1].row_after, -1);
+  EXPECT_EQ(about.cycle_edits[1].author, "Anna Ω");
+  EXPECT_EQ(about.cycle_edits[1].time, boundary.time);
+  EXPECT_THAT(about.header.history, HasSubstr("cycles edited by Anna Ω: 2 changes, in /cycle_edits\n"));
   EXPECT_EQ(about.time, rows.about().time) << "what was sampled stays";
   const auto flags = about.cycle_flags->flags;
   EXPECT_TRUE(std::ranges::any_of(
@@ -135,7 +156,7 @@ TEST(CycleEdit, IsToldByTheSummaryUntilCyclesAreFoundAnew) {
   EXPECT_EQ(summary["cycles"]["edits"].size(), 1U);
   EXPECT_EQ(summary["cycles"]["edits"][0]["author"], "Bo");
   segment_recording(recording, schema::RowsInMemory(recording), {}, "test");
-  EXPECT_TRUE(edits_of(recording.header).empty());
+  EXPECT_TRUE(edits_of(recording).empty());
   EXPECT_FALSE(recording_summary(recording)["cycles"].contains("edits"));
   EXPECT_THAT(recording.header.history, HasSubstr("cycles edited by Bo")) << "the history keeps what was";
 }
@@ -154,7 +175,8 @@ TEST(CycleEdit, LeavesOutAndTakesBack) {
   const CycleEdit restore{.found_by = {}, .phases = {}, .said = {}};
   const EditedCycles restored = edited_cycles(rows, restore, felt);
   EXPECT_TRUE(restored.flagged[3].is_good());
-  EXPECT_THAT(changes_by(rows, restore, restored), ElementsAre("cycle 4 no longer left out by hand"));
+  EXPECT_THAT(texts_of(changes_by(rows, restore, restored)),
+              ElementsAre("cycle 4 no longer left out by hand"));
 }
 
 TEST(CycleEdit, IsRefusedInALineThatNamesTheCycle) {
@@ -173,9 +195,15 @@ TEST(CycleEdit, IsRefusedInALineThatNamesTheCycle) {
   schema::PhaseSpan& closing = phase_of(empty.phases, 3, Phase::closing);
   closing.begin = closing.end;
   EXPECT_THAT(refused(empty), HasSubstr("expected one row and more"));
-  CycleEdit fewer = moved(recording, 3, Phase::closing, 0);
-  fewer.phases.pop_back();
-  EXPECT_THAT(refused(fewer), HasSubstr("of other cycles"));
+  CycleEdit open = moved(recording, 3, Phase::closing, 0);
+  std::erase_if(open.phases, [](const auto& it) { return it.cycle == 3 && it.phase == Phase::closing; });
+  EXPECT_THAT(refused(open), HasSubstr("cycle 3 is not made of a wait, a closing"));
+  CycleEdit gap = moved(recording, 3, Phase::closing, 0);
+  std::erase_if(gap.phases, [](const auto& it) { return it.cycle == 3; });
+  EXPECT_THAT(refused(gap), HasSubstr("expected cycles counted from 1"));
+  CycleEdit turned = moved(recording, 3, Phase::closing, 0);
+  phase_of(turned.phases, 3, Phase::closing).phase = Phase::opening;
+  EXPECT_THAT(refused(turned), HasSubstr("cycle 3 is not made of"));
   EXPECT_THAT(
       refused({.found_by = {}, .phases = {}, .said = {{.cycle = 9, .fault = "by_hand", .reason = "x"}}}),
       HasSubstr("there is no cycle 9; the recording has 8"));
@@ -187,6 +215,41 @@ TEST(CycleEdit, IsRefusedInALineThatNamesTheCycle) {
       HasSubstr("cycle 1 has no reason"));
   for (const char* author : {"", "a:b", "a\nb"})
     EXPECT_NE(refusal([&] { check_author(author); }), "") << author;
+}
+
+TEST(CycleEdit, IsToldOfAFileOfAnEarlierVersionByItsHistory) {
+  const schema::Recording earlier =
+      schema::read_recording(KERF_SOURCE_DIR "/tests/bench/data/segment/golden/edits-in-history.h5");
+  ASSERT_TRUE(earlier.cycle_edits.empty());
+  const std::vector<ToldEdit> edits = edits_of(earlier);
+  ASSERT_EQ(edits.size(), 2U);
+  EXPECT_EQ(edits[0].author, "Anna Ω");
+  EXPECT_EQ(edits[0].what, "cycle 3 left out: it slipped");
+  EXPECT_EQ(edits[1].author, "Bo");
+  EXPECT_THAT(edits[1].what, HasSubstr("cycle 2: closing begins at"));
+  EXPECT_THAT(edits[1].what, HasSubstr("; cycle 3 no longer left out by hand"));
+  EXPECT_TRUE(
+      schema::validate(KERF_SOURCE_DIR "/tests/bench/data/segment/golden/edits-in-history.h5").empty());
+}
+
+TEST(CycleEdit, IsToldInItsOrderWhereTheHistoryAndTheFileKeepSome) {
+  schema::Recording recording = eight_cycles();
+  recording.header.history += "2026-01-01T00:00:00Z kerf 0.1.0: cycles edited by Anna: cycle 2 left out: x\n";
+  for (const char* const author : {"Bo", "Cy"}) {
+    const CycleEdit edit = moved(recording, 2, Phase::opening, 10);
+    const schema::RowsInMemory rows(recording);
+    recording = with_edit(rows, edit, edited_cycles(rows, edit, felt), felt, author);
+  }
+  const std::vector<ToldEdit> edits = edits_of(recording);
+  ASSERT_EQ(edits.size(), 3U);
+  EXPECT_EQ(edits[0].what, "cycle 2 left out: x");
+  EXPECT_EQ(edits[1].author, "Bo");
+  EXPECT_THAT(edits[2].what, HasSubstr("cycle 2: opening begins at"));
+  EXPECT_EQ(recording.cycle_edits.back().edit, 2U);
+  recording.cycle_edits.clear();  // by a version that does not know them
+  EXPECT_THAT(edits_of(recording)[2].what, HasSubstr("in /cycle_edits"));
+  recording.header.history += "2026-01-01T00:00:00Z kerf 0.1.0: segment: 8 cycles\n";
+  EXPECT_TRUE(edits_of(recording).empty());
 }
 
 TEST(CycleEdit, MakesOtherCyclesOfWhichFitsCanTell) {

@@ -95,5 +95,11 @@ TEST(Units, RefuseWhatTheyDoNotKnowAndSayWhatTheyDo) {
   EXPECT_THAT(message("1e-320/kPa³"), testing::HasSubstr("zero"));
 }
 
+TEST(Units, OfWorkAreOfAnEnergyWhereTheForceAndTheWayMakeOne) {
+  EXPECT_EQ(work_unit("N", "m"), "J");
+  EXPECT_EQ(work_unit("N·m", "rad"), "J");
+  EXPECT_EQ(work_unit("N", "rad"), "N·rad") << "a force over an angle, whose lever nobody told";
+}
+
 }  // namespace
 }  // namespace kerf::bench

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -44,6 +45,17 @@ TEST(Conclusions, NameTheLawThatServesAndOfHowManySpecimens) {
   EXPECT_THAT(sentences_of(two_tissues()),
               Contains(HasSubstr(
                   "liver, slow: kelvin serves, with 3 parameters, in each of 5 recordings of 5 specimens")));
+}
+
+TEST(StudyResults, CallTheWorkOfAClosingAnEnergyOnlyWhereItIsOne) {
+  const auto unit_of_work = [](const StudyResults& results) {
+    const auto& quantities = results.groups.at(0).quantities;
+    return std::ranges::find(quantities, "work", &StudiedQuantity::name)->unit;
+  };
+  auto recordings = five_specimens("liver", 1.0);
+  EXPECT_EQ(unit_of_work(study_of(recordings)), "J");
+  for (DrawerRecording& one : recordings) one.result.position_unit = "rad";
+  EXPECT_EQ(unit_of_work(study_of(recordings)), "N·rad");
 }
 
 // Five against five specimens that do not overlap: 2 of the 252 ways to deal them out are as far apart, and

@@ -1,5 +1,6 @@
 #include "cycles/cycle_routes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -138,6 +139,36 @@ TEST_F(CycleRoutes, KeepAnEditInTheRecordingWithItsAuthor) {
       json::parse(save(after, {{"phases", plain(view["phases"])}, {"said", json::array()}}).body);
   EXPECT_EQ(undone["phases"], view["phases"]);
   EXPECT_EQ(undone["average"], view["average"]) << "nothing is left of what was undone";
+}
+
+TEST_F(CycleRoutes, SplitAndMergeCycles) {
+  const json view = stored();
+  const auto look = [&](const json& phases, const json& step) {
+    return ask_.post("/api/cycles/look",
+                     {{"recording", id_}, {"axis", 0}, {"phases", plain(phases)}, {"step", step}});
+  };
+  const json merged = json::parse(look(view["phases"], {{"kind", "merge"}, {"cycle", 3}}).body);
+  EXPECT_EQ(merged["cycles"].size(), 7U) << merged;
+  EXPECT_EQ(stored()["cycles"].size(), 8U) << "nothing is kept";
+  const json met = *std::ranges::find_if(view["phases"], [](const json& it) { return it[0] == 4; });
+  const json split =
+      json::parse(look(merged["phases"], {{"kind", "split"}, {"cycle", 3}, {"row", met[2]}}).body);
+  EXPECT_EQ(split["cycles"].size(), 8U) << split;
+  const json after = json::parse(save(view, {{"phases", plain(merged["phases"])}}).body);
+  EXPECT_EQ(after["cycles"].size(), 7U) << after;
+  EXPECT_THAT(after["edits"][0]["what"].get<std::string>(), HasSubstr("cycles 3 and 4, which met at"));
+  const schema::Recording kept = schema::read_recording(file());
+  ASSERT_EQ(kept.cycle_edits.size(), 1U);
+  EXPECT_EQ(kept.cycle_edits[0].kind, "merged");
+  EXPECT_EQ(kept.cycle_edits[0].author, "Anna");
+  EXPECT_EQ(test::run_kerf({"validate", file().string()}).exit_status, 0);
+  const json back = json::parse(save(after, {{"phases", plain(view["phases"])}}).body);
+  EXPECT_EQ(back["phases"], view["phases"]) << "what was saved can be taken back";
+  EXPECT_THAT(back["edits"][1]["what"].get<std::string>(), HasSubstr("cycle 3 split at"));
+  const auto refused = look(view["phases"], {{"kind", "split"}, {"cycle", 3}, {"row", 1}});
+  EXPECT_EQ(refused.status, 400);
+  EXPECT_THAT(refused.body, HasSubstr("cycle 3 has the rows"));
+  EXPECT_EQ(look(view["phases"], {{"kind", "turn"}, {"cycle", 3}}).status, 400);
 }
 
 TEST_F(CycleRoutes, RefuseTheSecondOfTwoTabs) {

@@ -115,7 +115,7 @@ TEST(LiveRoutes, StartSteerRecordAndStopALoop) {
   EXPECT_EQ(traces[0], (json{{"name", "position theta"}, {"unit", "rad"}, {"group", "position"}}));
   const HttpResponse view =
       site.ask("GET", "view", "", {{"traces", "0,1"}, {"from", "0"}, {"to", "1"}, {"columns", "20"}});
-  EXPECT_EQ(view.body.size(), 16U + 20 * 8 + 2 * 2 * 20 * 4);
+  EXPECT_EQ(view.body.size(), 32U + 20 * 8 + 2 * 2 * 20 * 4);
   EXPECT_EQ(
       site.ask("GET", "view", "", {{"traces", "99"}, {"from", "0"}, {"to", "1"}, {"columns", "9"}}).status,
       400);

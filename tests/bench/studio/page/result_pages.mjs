@@ -48,16 +48,30 @@ async function tick(page, ...laws) {
   for (const law of laws) await page.getByLabel(law, { exact: true }).check();
 }
 
-async function pickRecording(page, name) {
-  await page.getByRole("combobox", { name: "Recording" }).selectOption({ label: name });
-  await until("its axes are known", async () =>
-    (await page.getByRole("combobox", { name: "Axis" }).textContent()).includes("theta"),
-  );
+/** The tab of a recording, with its form. */
+async function openTab(page, studio, name, tab) {
+  await go(page, studio, `recording/${await studio.id("recordings", name)}/${tab}`);
+}
+
+/** The choice names an error that stands in a column of that name, and a straight line is there to hold laws against. */
+async function expectNumbersOfTheSentence(page, written) {
+  const { model, why } = written.choice;
+  expect(why.includes("held-out data as rendered"), `the choice says which error it goes by: ${why}`);
+  const heads = await page.locator("table.fits thead th").allTextContents();
+  const at = heads.indexOf("held out as rendered [N]");
+  const row = page.locator("table.fits tbody tr", { hasText: model });
+  const shown = await row.locator("> *").nth(at).textContent();
+  expect(new RegExp(`(^|[ (])${shown.replace(".", "[.]")} N`).test(why), `${shown} N stands in: ${why}`);
+  const line = page.locator("table.fits tfoot tr", { hasText: "straight line" });
+  const error = line.locator("> *").nth(heads.indexOf("error [N]"));
+  expectEqual(Number(await error.getAttribute("data-value")), written.line_rmse, "the error of a straight line");
+  const floor = page.locator("table.fits tfoot tr", { hasText: "floor" });
+  const held = floor.locator("> *").nth(heads.indexOf("held out [N]"));
+  expectEqual(Number(await held.getAttribute("data-value")), written.floor.velocity, "the floor");
 }
 
 async function testFits(page, studio) {
-  await go(page, studio, "fits");
-  await pickRecording(page, "cut.h5");
+  await openTab(page, studio, "cut.h5", "fits");
   await tick(page, "kelvin", "exponential");
   await page.getByRole("button", { name: "Fit", exact: true }).click();
   await result(page, "cut.h5", "cut.fit");
@@ -67,6 +81,7 @@ async function testFits(page, studio) {
     ["kelvin", "exponential"],
     "laws, the least error first",
   );
+  await expectNumbersOfTheSentence(page, written);
   expect((await page.textContent("main p.choice")).includes(written.choice.why), "the choice says why");
   // One law has another error here and in the segment editor (finding S24): both pages say why.
   const text = await page.textContent("main");
@@ -118,8 +133,7 @@ async function testFeeling(page) {
 }
 
 async function testChart(page, studio) {
-  await go(page, studio, "chart");
-  await pickRecording(page, "short.h5");
+  await openTab(page, studio, "short.h5", "chart");
   await tick(page, "kelvin");
   await page.getByRole("button", { name: "Chart", exact: true }).click();
   await result(page, "short.h5", "short.chart");

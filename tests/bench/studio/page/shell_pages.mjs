@@ -103,6 +103,20 @@ export const tests = {
       expect((await hash(page)).includes(key), `${await hash(page)} has ${key}`);
     }
     await page.waitForSelector("table.fits");
+    studio.kerfOrThrow("fit", "cut.h5", "--models", "kelvin", "-o", "elsewhere.fit");
+    const another = await studio.id("files", "elsewhere.fit/fit.json");
+    await page.goto(studio.page(`fits/${another}`));
+    await page.waitForSelector("table.fits");
+    expectEqual(await page.textContent("h1"), "elsewhere.fit", "a fit of no recording of the folder, by itself");
+    for (const [list, names] of [
+      ["fits", ["cut.fit", "elsewhere.fit"]],
+      ["chart", []],
+    ]) {
+      await page.goto(studio.page(list));
+      await page.waitForSelector("main section.card");
+      expectEqual(await page.locator("main .links a").allTextContents(), names, `what ${list} lists`);
+      expectEqual(await page.locator("main form").count(), 0, "forms are in the tabs of recordings");
+    }
     expectNoComplaints(page);
   },
 

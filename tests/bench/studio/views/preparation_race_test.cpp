@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "views/row_preparation.h"
+#include "views/rows/row_preparation.h"
 
 // Built and run with the thread sanitizer by scripts/test; without it, it shows that nothing is lost.
 

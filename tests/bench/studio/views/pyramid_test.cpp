@@ -1,4 +1,4 @@
-#include "views/pyramid.h"
+#include "views/rows/pyramid.h"
 
 #include <bit>
 #include <cmath>

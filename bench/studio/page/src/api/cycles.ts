@@ -18,6 +18,9 @@ export interface Remark {
   reason: string;
 }
 
+/** One cycle made two at a row, or a cycle and the next one made one. */
+export type CycleStep = { kind: "split"; cycle: number; row: number } | { kind: "merge"; cycle: number };
+
 export interface JudgedCycle {
   number: number;
   good: boolean;

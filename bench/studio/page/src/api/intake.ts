@@ -56,6 +56,7 @@ export interface Preview {
   };
   suggested: { map: string; has_time: boolean };
   mapped: MappedColumn[];
+  units: Record<string, string[]>; // to choose from, by channel; "own" of a channel of one's own
   problem: string; // why nothing would come of it; empty if something would
   warnings: string[];
   notes: string[];

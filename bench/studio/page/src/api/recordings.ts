@@ -135,7 +135,13 @@ export interface Inspection {
   signals: Record<string, InspectedSignal>;
   contact: { felt: number; least: number; rows: number; stretches: unknown[] } | null;
   lag: { seconds: number; correlation: number; correlation_now: number } | null;
-  cycles: { stored: boolean; good: string; list: InspectedCycle[] } | null;
+  cycles: {
+    stored: boolean;
+    good: string;
+    force_unit: string; // of peaks
+    work_unit: string; // "N·rad" of a force over an angle, which is no energy
+    list: InspectedCycle[];
+  } | null;
   warnings: string[];
 }
 export interface ClippedRun {

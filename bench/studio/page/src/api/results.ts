@@ -214,7 +214,7 @@ export interface LawView {
   curve: { penetration: number[]; closing: number[]; opening: number[]; speed: number; range: string };
 }
 
-/** Law less measured force. */
+/** Measured less law, of the rows that the law is judged by; null in a column without one. */
 export interface Residuals {
   axis: string;
   position_unit: string;
@@ -224,17 +224,19 @@ export interface Residuals {
   worst: number;
   jnd_n: number;
   time_s: number[];
-  smallest: number[];
-  largest: number[];
+  smallest: (number | null)[];
+  largest: (number | null)[];
   penetration: number[];
   mean: (number | null)[];
   low: (number | null)[];
   high: (number | null)[];
   over_time: {
-    measured_smallest: number[];
-    measured_largest: number[];
-    law_smallest: number[];
-    law_largest: number[];
+    measured_smallest: (number | null)[];
+    measured_largest: (number | null)[];
+    not_judged_smallest: (number | null)[]; // measured in the other rows
+    not_judged_largest: (number | null)[];
+    law_smallest: (number | null)[];
+    law_largest: (number | null)[];
   };
   /** Where its error lies, the largest share of the squared error first. */
   places: { from_s: number; to_s: number; cycle?: number; phase?: string; rmse: number; share: number }[];

@@ -1,34 +1,10 @@
-// Steps of viridis, as in the report: lighter all the way, for every kind of colour vision and in grey.
+// Steps of viridis, as in the report.
+
+import { colourAt } from "../ui/sequential";
 
 export interface Steps {
   bounds: number[]; // one more than there are colours
   colours: string[];
-}
-
-type Rgb = readonly [number, number, number];
-
-const viridis: readonly Rgb[] = [
-  [68, 1, 84],
-  [72, 40, 120],
-  [62, 73, 137],
-  [49, 104, 142],
-  [38, 130, 142],
-  [31, 158, 137],
-  [53, 183, 121],
-  [110, 206, 88],
-  [181, 222, 43],
-  [253, 231, 37],
-];
-
-function colourAt(share: number): string {
-  const place = Math.min(Math.max(share, 0), 1) * (viridis.length - 1);
-  const below = Math.min(Math.floor(place), viridis.length - 2);
-  const part = place - below;
-  const mixed = [0, 1, 2].map((channel) => {
-    const [from, to] = [viridis[below]?.[channel] ?? 0, viridis[below + 1]?.[channel] ?? 0];
-    return Math.round(from * (1 - part) + to * part);
-  });
-  return `rgb(${mixed.join(" ")})`;
 }
 
 function linearBounds(smallest: number, largest: number): number[] {

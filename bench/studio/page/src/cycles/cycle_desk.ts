@@ -1,5 +1,5 @@
 import { ApiError } from "../api/api";
-import type { CycleView, FindSettings, Remark } from "../api/cycles";
+import type { CycleStep, CycleView, FindSettings, Remark } from "../api/cycles";
 import { History } from "../editor/history";
 import { Latest } from "../ui/latest";
 import type { Context } from "../ui/view";
@@ -35,6 +35,8 @@ export class CycleDesk {
     private readonly context: Context,
     private readonly id: string,
     private readonly changed: () => void,
+    /** As OpenRecording has it. */
+    private readonly writing: () => (written: boolean) => void,
   ) {
     this.latest = new Latest(context.signal);
     context.signal.addEventListener("abort", () => clearTimeout(this.timer));
@@ -66,7 +68,7 @@ export class CycleDesk {
       this.begin(view);
       const kept = keptDraft(this.id);
       if (kept?.uuid === view.uuid && kept.version === view.version) this.record(kept.draft);
-      else if (kept) this.merge(kept.base, kept.draft, kept.uuid === view.uuid);
+      else if (kept) this.putOnTop(kept.base, kept.draft, kept.uuid === view.uuid);
     } catch (error) {
       this.fail(error);
     }
@@ -93,6 +95,39 @@ export class CycleDesk {
 
   remark(cycle: number, remark: Remark | null): void {
     if (this.draft) this.record(withRemark(this.draft, cycle, remark));
+  }
+
+  /** Where phases of cycles that are split or merged begin and end is the server's to say. */
+  async step(step: CycleStep): Promise<void> {
+    const { draft } = this;
+    if (!draft || this.view?.locked) return;
+    clearTimeout(this.timer);
+    await this.ask({ ...this.wanted(draft), step }, ({ phases, said }) => {
+      if (this.draft === draft) this.record({ settings: draft.settings, phases, said }, "", false);
+    });
+  }
+
+  /** Splits the cycle that lies at a time there. */
+  async splitAt(time_s: number): Promise<void> {
+    const phase = this.draft?.phases.find((it) => time_s >= it[4] && time_s < it[5]);
+    if (!phase) return this.context.say("There is no cycle at the cursor.");
+    try {
+      const { row } = await this.context.api.get<{ row: number }>("/api/cycles/row", { id: this.id, time: time_s });
+      await this.step({ kind: "split", cycle: phase[0], row });
+    } catch (error) {
+      this.fail(error);
+      this.changed();
+    }
+  }
+
+  /** Makes the chosen cycle and the next one one. */
+  async merge(): Promise<void> {
+    if (this.canMerge) await this.step({ kind: "merge", cycle: this.loop });
+    else this.context.say("Choose a cycle that another one follows.");
+  }
+  get canMerge(): boolean {
+    const numbers = this.draft?.phases.map((it) => it[0]) ?? [];
+    return numbers.includes(this.loop) && numbers.includes(this.loop + 1);
   }
 
   undo(): void {
@@ -188,9 +223,11 @@ export class CycleDesk {
     clearTimeout(this.timer);
     this.isSaving = true;
     this.changed();
+    const end = this.writing();
     try {
       const body = { recording: this.id, version: this.version, uuid: this.uuid, author, ...this.wanted(draft) };
       const saved = await this.context.api.post<CycleView>("/api/cycles/save", body);
+      end(true);
       if (this.context.signal.aborted) return;
       this.isSaving = false;
       if (draft.settings && this.draft === draft) this.begin(saved);
@@ -205,6 +242,7 @@ export class CycleDesk {
       this.context.lookAtFolder();
       this.soon();
     } catch (error) {
+      end(false);
       this.isSaving = false;
       this.fail(error);
     }
@@ -221,7 +259,7 @@ export class CycleDesk {
       if (!view) return;
       this.begin(view);
       keepDraft(this.id, null);
-      if (withMine && draft && saved) this.merge(saved, draft, view.uuid === uuid);
+      if (withMine && draft && saved) this.putOnTop(saved, draft, view.uuid === uuid);
       this.soon();
     } catch (error) {
       this.fail(error);
@@ -229,7 +267,7 @@ export class CycleDesk {
     this.changed();
   }
 
-  private merge(base: Draft, mine: Draft, isSame: boolean): void {
+  private putOnTop(base: Draft, mine: Draft, isSame: boolean): void {
     const theirs = this.saved;
     if (!theirs) return;
     if (!isSame) {
@@ -244,7 +282,7 @@ export class CycleDesk {
     this.context.say(
       lost === 0
         ? "Loaded; what was changed here is on top."
-        : `Loaded; ${lost} of the boundaries moved here do not fit there any more: theirs stay.`,
+        : `Loaded; ${lost} of the changes made here do not fit there any more: theirs stay.`,
     );
   }
 

@@ -94,12 +94,29 @@ export function spanOf(draft: Draft, cycle: number): { from_s: number; to_s: num
   return { from_s: Math.min(...own.map((it) => it[4])), to_s: Math.max(...own.map((it) => it[5])) };
 }
 
+/** Which phases of which cycles there are, whatever their rows. */
+const divisionOf = (it: Draft): string => JSON.stringify(it.phases.map((phase) => phase.slice(0, 2)));
+
+/** The number that a cycle of `base` has in `theirs`, where cycles may have been split and merged; 0: none. */
+function numberIn(theirs: Draft, base: Draft, cycle: number): number {
+  if (divisionOf(theirs) === divisionOf(base)) return cycle;
+  const rows = (it: Draft, number: number): string => {
+    const own = it.phases.filter((phase) => phase[0] === number);
+    return JSON.stringify([own[0]?.[2], own[own.length - 1]?.[3]]);
+  };
+  const wanted = rows(base, cycle);
+  return [...new Set(theirs.phases.map((it) => it[0]))].find((it) => rows(theirs, it) === wanted) ?? 0;
+}
+
 /**
  * What was changed here from `base` to `mine`, put on top of what somebody else has saved meanwhile: boundaries that
- * were moved, and remarks. Where a boundary does not fit there any more, theirs stays; how many is told.
+ * were moved, and remarks. Where a boundary does not fit there any more, theirs stays; how many is told. Cycles that
+ * were split or merged here are put on cycles that nobody else has touched, or not at all.
  */
 export function onTop(base: Draft, mine: Draft, theirs: Draft, rows: number): { draft: Draft; lost: number } {
   if (mine.settings) return { draft: mine, lost: 0 }; // found anew: theirs is what it takes the place of
+  if (divisionOf(base) !== divisionOf(mine))
+    return areAlike(base, theirs) ? { draft: mine, lost: 0 } : { draft: theirs, lost: 1 };
   let draft = theirs;
   let lost = 0;
   for (const [index, phase] of mine.phases.entries()) {
@@ -109,7 +126,8 @@ export function onTop(base: Draft, mine: Draft, theirs: Draft, rows: number): { 
       const [row, time] = edge === "begin" ? [2, 4] : [3, 5];
       if (phase[row] === before[row]) continue;
       if (edge === "end" && meeting(mine.phases, index, "end") >= 0) continue; // told by the begin of the next
-      const there = draft.phases.findIndex((it) => it[0] === phase[0] && it[1] === phase[1]);
+      const number = numberIn(theirs, base, phase[0]);
+      const there = draft.phases.findIndex((it) => it[0] === number && it[1] === phase[1]);
       const at = there < 0 ? null : boundary(draft, there, edge, rows);
       if (!at || phase[row]! < at.least || phase[row]! > at.most) ++lost;
       else draft = moved(draft, at, phase[row]!, phase[time]!);
@@ -117,7 +135,12 @@ export function onTop(base: Draft, mine: Draft, theirs: Draft, rows: number): { 
   }
   const key = (it: Remark): string => JSON.stringify(it);
   const [had, have] = [new Set(base.said.map(key)), new Set(mine.said.map(key))];
-  for (const it of base.said) if (!have.has(key(it))) draft = withRemark(draft, it.cycle, null);
-  for (const it of mine.said) if (!had.has(key(it))) draft = withRemark(draft, it.cycle, it);
+  const say = (cycle: number, remark: Remark | null): void => {
+    const number = numberIn(theirs, base, cycle);
+    if (number === 0) ++lost;
+    else draft = withRemark(draft, number, remark && { ...remark, cycle: number });
+  };
+  for (const it of base.said) if (!have.has(key(it))) say(it.cycle, null);
+  for (const it of mine.said) if (!had.has(key(it))) say(it.cycle, it);
   return { draft, lost };
 }

@@ -8,6 +8,9 @@ const mostCycles = 500;
 
 interface Hands {
   choose: (cycle: number) => void;
+  /** The next press on the plots is where a cycle is split; or no longer. */
+  split: () => void;
+  merge: () => void;
   remark: (cycle: number, remark: Remark | null) => void;
 }
 
@@ -17,6 +20,8 @@ export class CycleTable {
   private readonly head = element("h2", {});
   private readonly list = element("ol", { class: "cycle_list" });
   private readonly reason: HTMLInputElement;
+  private readonly split: HTMLButtonElement;
+  private readonly merge: HTMLButtonElement;
   private lines = new Map<number, HTMLLIElement>();
   private drawn = "";
 
@@ -26,13 +31,25 @@ export class CycleTable {
       placeholder: "left out by hand",
       "aria-label": "Why a cycle is left out or taken",
     });
+    this.split = button("Split …", () => hands.split(), {
+      title: "Where you press in the plots. Key s: at the cursor",
+    });
+    this.merge = button("Merge with the next", () => hands.merge(), { title: "The chosen cycle. Key m" });
     this.root = element(
       "section",
       { class: "cycle_table", "aria-label": "Cycles" },
       this.head,
+      element("div", { class: "row" }, this.split, this.merge),
       element("label", { class: "field" }, element("span", {}, "Reason for the next one"), this.reason),
       this.list,
     );
+  }
+
+  /** Which of the deeds on whole cycles there are. */
+  offer(canSplit: boolean, splits: boolean, canMerge: boolean): void {
+    this.split.disabled = !canSplit;
+    this.split.setAttribute("aria-pressed", String(splits));
+    this.merge.disabled = !canMerge;
   }
 
   show(view: CycleView | null, draft: Draft | null, chosen: number, locked: boolean): void {

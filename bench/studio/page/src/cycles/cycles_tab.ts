@@ -28,6 +28,8 @@ export class CyclesTab {
   private readonly fits: EarlierFits;
   private readonly observer: ResizeObserver;
   private held: Held | null = null;
+  private splits = false; // the next press on the plots splits a cycle
+  private look: () => Promise<void> = () => Promise.resolve();
 
   constructor(
     root: HTMLElement,
@@ -37,7 +39,15 @@ export class CyclesTab {
     const { about, id } = recording;
     const { api, state } = context;
     this.loop = new CycleLoop(recording.name);
-    this.desk = new CycleDesk(context, id, () => this.show());
+    this.desk = new CycleDesk(
+      context,
+      id,
+      () => this.show(),
+      () => {
+        const end = recording.writing();
+        return (written) => end(written, () => void this.look());
+      },
+    );
     this.time = new RecordingTime(api, context.complain, element("div", {}), (from, to, whole) => {
       state.set({ [stateKeys.from]: whole ? null : from, [stateKeys.to]: whole ? null : to });
       this.handles.place();
@@ -60,6 +70,12 @@ export class CyclesTab {
     this.settings = new CycleSettings(about.axes, (settings, axis) => this.desk.find(settings, axis));
     this.table = new CycleTable({
       choose: (cycle) => this.choose(cycle),
+      split: () => {
+        this.splits = !this.splits;
+        this.context.say(this.splits ? "Press in the plots where the cycle is to be split." : "");
+        this.show();
+      },
+      merge: () => void this.desk.merge(),
       remark: (cycle, remark) => this.desk.remark(cycle, remark),
     });
     this.bar = new SaveBar(this.desk);
@@ -68,7 +84,7 @@ export class CyclesTab {
     this.lay(root, plots);
     this.observer = new ResizeObserver(() => this.handles.place());
     this.observer.observe(plots);
-    plots.addEventListener("click", () => this.chooseAtCursor());
+    plots.addEventListener("click", () => (this.splits ? this.splitAtCursor() : this.chooseAtCursor()));
     this.takeKeys(root);
     this.time.show([{ recording: about, name: recording.name, shift_s: 0 }], tracesOf(about));
     this.follow();
@@ -106,17 +122,24 @@ export class CyclesTab {
         element("section", { "aria-label": "What it is worth" }, worth.root),
       ),
     );
-    const { signal } = this.context;
-    this.recording.inspection().then(
-      (found) => signal.aborted || worth.show(found),
-      (error: unknown) => signal.aborted || worth.fail(error),
-    );
+    this.look = async () => {
+      const { signal } = this.context;
+      try {
+        const found = await this.recording.inspection();
+        if (!signal.aborted) worth.show(found);
+      } catch (error) {
+        if (!signal.aborted) worth.fail(error);
+      }
+    };
+    void this.look();
   }
 
   private takeKeys(root: HTMLElement): void {
     this.context.offer(
       { title: "Undo", group: "Cycles", run: () => this.desk.undo() },
       { title: "Redo", group: "Cycles", run: () => this.desk.redo() },
+      { title: "Split the cycle at the cursor", group: "Cycles", keys: "s", run: () => this.splitAtCursor() },
+      { title: "Merge the cycle with the next", group: "Cycles", keys: "m", run: () => void this.desk.merge() },
     );
     root.addEventListener("keydown", (event) => {
       if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z") return;
@@ -160,6 +183,14 @@ export class CyclesTab {
     this.show();
   }
 
+  private splitAtCursor(): void {
+    const at = this.time.stack.range.cursor;
+    this.splits = false;
+    if (at === null) this.context.say("Put the cursor where the cycle is to be split: the pointer, or the arrow keys.");
+    else void this.desk.splitAt(at);
+    this.show();
+  }
+
   private show(): void {
     const { view, draft, loop } = this.desk;
     this.bar.show();
@@ -168,6 +199,8 @@ export class CyclesTab {
     const { about } = this.recording;
     this.settings.show(draft.settings ?? view.settings, view.axis, locked);
     this.table.show(view, draft, loop, locked);
+    this.table.offer(!locked && draft.phases.length > 0, this.splits, !locked && this.desk.canMerge);
+    this.time.root.classList.toggle("splits", this.splits);
     this.handles.show(draft, loop, view.rows, about.period_s, locked);
     this.empty.hidden = view.why_none === "";
     this.empty.textContent = view.why_none;

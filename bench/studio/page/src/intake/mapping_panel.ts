@@ -56,7 +56,7 @@ export class MappingPanel {
       element(
         "div",
         { class: "row mapping_head" },
-        labelled("Mapping, as kerf import --map has it", this.map),
+        labelled("Mapping as text", this.map),
         labelled("Saved mappings", this.saved),
         element(
           "div",
@@ -134,7 +134,7 @@ export class MappingPanel {
   /** A map that is none is said here; a file that nobody can read, at the file. */
   private refuse(file: TakenFile, why: string): void {
     this.fits = false;
-    const isMap = why.startsWith("--map") || why.startsWith("'");
+    const isMap = why.startsWith("The mapping") || why.startsWith("'");
     this.verdict.className = "verdict wrong";
     this.verdict.textContent = why;
     this.warnings.hidden = true;
@@ -174,7 +174,7 @@ export class MappingPanel {
     try {
       const name = this.name.value.trim();
       const saved = await context.api.post<{ name: string }>("/api/import/mapping", { name, replace, ...this.mapping });
-      context.say(`Saved as ${saved.name}: kerf import --map ${saved.name} takes it too.`);
+      context.say(`Saved as ${saved.name}: it is offered for further files, and the program takes it too.`);
       context.lookAtFolder();
     } catch (error) {
       context.complain(error);

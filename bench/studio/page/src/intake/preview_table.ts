@@ -1,6 +1,7 @@
 import type { LineKind, Preview, PreviewColumn, PreviewLine } from "../api/intake";
 import { element, select } from "../ui/dom";
 import { choicesOf, isPlain, mapOf, ownChannel, usualChannels, type Choice } from "./mapping";
+import { UnitField } from "./unit_field";
 
 const words: Record<LineKind, string> = {
   remark: "remark",
@@ -18,7 +19,7 @@ export class PreviewTable {
   private columns = ""; // what the head is of: it is built anew only where that changes, so that focus stays
   private choices: Choice[] = [];
   private channels: HTMLSelectElement[] = [];
-  private units: HTMLInputElement[] = [];
+  private units: UnitField[] = [];
   private readonly head = element("tr", {});
   private readonly body = element("tbody");
   private readonly further = element("div", {});
@@ -34,9 +35,9 @@ export class PreviewTable {
     this.choices.forEach((choice, k) => {
       const [channel, unit] = [this.channels[k]!, this.units[k]!];
       offer(channel, choice.channel);
-      if (document.activeElement !== unit) unit.value = choice.unit;
-      channel.disabled = unit.disabled = !plain;
-      unit.hidden = choice.channel === "" || preview.columns[k]!.stamps;
+      channel.disabled = !plain;
+      unit.show(choice.unit, preview.units[choice.channel] ?? preview.units.own ?? [], !plain);
+      unit.root.hidden = choice.channel === "" || preview.columns[k]!.stamps;
     });
     const width = preview.columns.length;
     this.body.replaceChildren(...preview.lines.map((line) => row(line, width, this.choices)));
@@ -70,16 +71,10 @@ export class PreviewTable {
     const name = column.name || `column ${column.number}`;
     const channel = select([], "", (value) => this.choose(k, value, column));
     channel.setAttribute("aria-label", `What column ${column.number}, ${name}, becomes`);
-    const unit = element("input", {
-      class: "unit",
-      "aria-label": `Unit of column ${column.number}, ${name}`,
-      placeholder: column.unit || "unit",
-      maxlength: 40,
-      spellcheck: "false",
-      input: () => {
-        this.choices[k]!.unit = unit.value.trim();
-        this.changed(mapOf(this.choices));
-      },
+    channel.className = "channel";
+    const unit = new UnitField(column, (text) => {
+      this.choices[k]!.unit = text;
+      this.changed(mapOf(this.choices));
     });
     this.channels[k] = channel;
     this.units[k] = unit;
@@ -90,7 +85,7 @@ export class PreviewTable {
       element("span", { class: "preview_name", title: column.heading }, `${column.number} ${column.name}`),
       element("span", { class: "quiet" }, said),
       channel,
-      unit,
+      unit.root,
     );
   }
 

@@ -14,6 +14,7 @@ export class RecordingPage {
   private readonly panel = element("div", { class: "tab_panel", role: "tabpanel", id: "tab_panel" });
   private recording: OpenRecording | null = null;
   private said = ""; // of the file that has changed
+  private writers = 0; // of the file, within this page
   private end: () => void = () => {};
 
   constructor(
@@ -62,7 +63,12 @@ export class RecordingPage {
         api.get<Recording>("/api/recording", { id }, signal),
       ]);
       const name = workspace.recordings.find((it) => it.id === id)?.name ?? id;
-      this.recording = { id, name, about, workspace, inspection: this.inspectOnce(id), reload: () => void this.open() };
+      this.recording = {
+        ...{ id, name, about, workspace },
+        inspection: this.inspectOnce(id),
+        writing: () => this.beginWriting(),
+        reload: () => void this.open(),
+      };
       if (this.said) this.context.say("");
       this.said = "";
       const file = name.lastIndexOf("/") + 1;
@@ -82,9 +88,38 @@ export class RecordingPage {
     }
   }
 
+  private beginWriting(): (written: boolean, read?: () => void) => void {
+    ++this.writers;
+    let ended = false;
+    return (written, read) => {
+      if (ended) return;
+      ended = true;
+      void (written ? this.readQuietly() : Promise.resolve()).finally(() => {
+        --this.writers;
+        if (written) read?.();
+      });
+    };
+  }
+
+  /** What the page has written itself, into what its tabs hold. */
+  private async readQuietly(): Promise<void> {
+    const { recording, context } = this;
+    if (!recording) return;
+    const { id } = recording;
+    try {
+      const [workspace, about] = await Promise.all([
+        context.api.get<Workspace>("/api/workspace", {}, context.signal),
+        context.api.get<Recording>("/api/recording", { id }, context.signal),
+      ]);
+      Object.assign(recording, { about, workspace, inspection: this.inspectOnce(id) });
+    } catch {
+      // what is shown is of before, and the next look at the folder says so
+    }
+  }
+
   /** With what is in the folder now: the page shows what was read, and says so when that is not what is there. */
   private compare(workspace: Workspace): void {
-    if (!this.recording) return;
+    if (!this.recording || this.writers > 0) return;
     const { id, name, workspace: read } = this.recording;
     const then = read.recordings.find((it) => it.id === id);
     const now = workspace.recordings.find((it) => it.id === id);

@@ -36,7 +36,10 @@ export class InspectionPanel {
     return tableOf(
       "cycles",
       `${cycles.list.length} cycles, ${found}; good: ${cycles.good || "none"}${more}`,
-      ["Cycle", "Begin [s]", "Wait [s]", "Closing [s]", "Hold [s]", "Opening [s]", "Peak", "Work [J]", "Flags"],
+      [
+        ...["Cycle", "Begin [s]", "Wait [s]", "Closing [s]", "Hold [s]", "Opening [s]"],
+        ...[`Peak [${cycles.force_unit}]`, `Work [${cycles.work_unit}]`, "Flags"],
+      ],
       cycles.list.slice(0, mostCycles).map((it) => this.row(it)),
     );
   }

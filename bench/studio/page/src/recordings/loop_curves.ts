@@ -16,13 +16,32 @@ export function loopCurves(loops: Loops, kind: Kind, look: number, recording: st
     return [lineOf(recording, loops.whole.position, loops.whole.force, { colour, width: 1, name: of("all rows") })];
   const { position, closing, opening } = loops.average;
   if (kind === "average" || (kind === "all" && look > 0)) {
+    // Beside others a recording has one colour; by itself closing is blue and opening red, as in reports.
+    const named = (what: string): { marked: boolean; name: string } => ({ marked, name: of(what) });
     return [
-      lineOf(of("closing"), position, closing, { colour, width: 2.75, marked }),
-      lineOf(of("opening"), position, opening, { colour, width: 1.25, marked }),
+      lineOf(of("closing"), position, closing, { colour, width: 2.75, ...named("closing") }),
+      lineOf(of("opening"), position, opening, {
+        colour: marked ? colour : "vermillion",
+        width: 1.25,
+        ...named("opening"),
+      }),
     ];
   }
-  const width = kind === "one" ? 2 : 0.8;
+  const width = kind === "one" ? 2 : 1;
+  const last = loops.loops.length - 1;
+  const isOrdered = kind === "all" && !marked && last > 0;
   return loops.loops.map((it, k) =>
-    lineOf(k === 0 ? recording : "", it.position, it.force, { colour, width, name: of(`cycle ${it.cycle}`) }),
+    lineOf(k === 0 ? recording : "", it.position, it.force, {
+      colour,
+      width,
+      name: of(`cycle ${it.cycle}`),
+      ...(isOrdered ? { order: k / last } : {}),
+    }),
   );
+}
+
+/** What the colours of cycles at once mean; empty where they mean nothing. */
+export function orderInWords(curves: readonly FigureCurve[]): string {
+  const ordered = curves.filter((it) => it.order !== undefined);
+  return ordered.length === 0 ? "" : `${ordered[0]!.name} to ${ordered[ordered.length - 1]!.name}, in their order`;
 }

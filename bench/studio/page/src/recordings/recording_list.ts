@@ -30,8 +30,7 @@ export class RecordingList {
     this.all = [...workspace.recordings].sort((a, b) => b.modified.localeCompare(a.modified));
     if (this.all.length > 0) return this.draw();
     this.count.textContent = "";
-    const none = `No recordings in ${workspace.folder} yet. Record one on the scope, or by kerf record.`;
-    this.frame.replaceChildren(element("p", {}, none));
+    this.frame.replaceChildren(element("p", {}, ...waysToARecording(` in ${workspace.folder}`)));
   }
 
   private draw(): void {
@@ -103,4 +102,15 @@ export function date(iso: string): string {
   const at = new Date(iso);
   if (Number.isNaN(at.getTime())) return iso;
   return at.toLocaleString("en-GB", { dateStyle: "medium", timeStyle: "short" });
+}
+
+/** What somebody sees who has none. */
+export function waysToARecording(where = ""): (string | HTMLElement)[] {
+  return [
+    `No recording${where} yet: `,
+    element("a", { href: "#/import" }, "import a file"),
+    " (or drop it anywhere here), or record one on the ",
+    element("a", { href: "#/scope" }, "scope"),
+    ".",
+  ];
 }

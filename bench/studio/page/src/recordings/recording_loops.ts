@@ -7,7 +7,7 @@ import { limitsOf } from "../ui/plot/frame";
 import { Plot } from "../ui/plot/plot";
 import { scaledFor } from "../ui/plot/scaled";
 import { rangeAround } from "../ui/plot/scale";
-import { loopCurves, type Kind } from "./loop_curves";
+import { loopCurves, orderInWords, type Kind } from "./loop_curves";
 import { namedOnce } from "./trace_groups";
 import { stateKeys } from "../recording/keys";
 import { Latest } from "../ui/latest";
@@ -175,7 +175,7 @@ export class RecordingLoops {
     const apart = several && this.beside.checked;
     const figures = (apart ? all : [all.flat()]).map((curves) => {
       const drawn = curves.map((it) => ({ ...it, x: x.of(it.x), y: y.of(it.y) }));
-      return figureOf(x.label, y.label, { curves: drawn, notes: notesOf(kind) });
+      return figureOf(x.label, y.label, { curves: drawn, notes: notesOf(kind), ordered: orderInWords(curves) });
     });
     const names = apart
       ? answers.flatMap((it, k) => (it ? [name(k)] : []))

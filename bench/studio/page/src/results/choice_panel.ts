@@ -34,7 +34,7 @@ function candidateTable(of: readonly ChoiceCandidate[], unit: string, ifTaken: s
     [
       "law",
       "free",
-      ["held out", `held-out error [${unit}]`],
+      ["held out as rendered", `held-out error as rendered [${unit}]`],
       ["JND", "held-out error [JND]"],
       ["tick", "tick [us]"],
       "stable",

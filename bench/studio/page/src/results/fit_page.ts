@@ -3,7 +3,7 @@ import type { Workspace, WorkspaceFile, WorkspaceLaw } from "../api/workspace";
 import { stateKeys } from "../recording/keys";
 import { element, labelled, select } from "../ui/dom";
 import { Latest } from "../ui/latest";
-import { withUnit } from "../ui/numbers";
+import { plain } from "../ui/numbers";
 import { Plot } from "../ui/plot/plot";
 import type { Context } from "../ui/view";
 import { FitTable, entanglements, parameterTable } from "./fit_table";
@@ -63,8 +63,9 @@ export class FitPage {
         "p",
         { class: "quiet" },
         `${of?.name ?? ""}, axis ${of?.axis ?? ""}: ${fit.samples} samples. ` +
-          `JND ${withUnit(fit.jnd, unit)}; a straight line leaves ${withUnit(fit.line_rmse, unit)}. ` +
-          "Errors are over every row in contact; the segment editor's are over the averaged cycle, without what cycles differ by.",
+          `JND ${plain(fit.jnd)} ${unit}; a straight line leaves ${plain(fit.line_rmse)} ${unit}. ` +
+          "Errors are over every row in contact; the segment editor's are over the averaged cycle, without what " +
+          "cycles differ by.",
       ),
       this.table.root,
       element(

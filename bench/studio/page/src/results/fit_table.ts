@@ -1,6 +1,6 @@
 import type { Estimate, FitFile, LawFit } from "../api/results";
 import { button, element, numberCell } from "../ui/dom";
-import { plain, withUnit } from "../ui/numbers";
+import { plain } from "../ui/numbers";
 import { csvOf, type CsvColumn } from "../ui/plot/out/csv_file";
 import { download, fileName } from "../ui/plot/out/download";
 import { tableMenu } from "../ui/plot/out/export_menu";
@@ -31,6 +31,29 @@ function head(text: string, number = true, file = text): HTMLTableCellElement {
 
 function cell(text: string): HTMLTableCellElement {
   return element("td", { class: "number" }, text);
+}
+
+/** What laws are held against: a straight line, which any law has to beat, and what hardly any can. */
+function references({ line_rmse, floor, jnd }: FitFile): HTMLTableRowElement[] {
+  const row = (name: string, free: number | null, errors: readonly (number | null)[], remark: string) => {
+    const error = errors.find((it) => it !== null) ?? null;
+    const jnds = error === null ? null : error / jnd;
+    return element(
+      "tr",
+      { class: "reference" },
+      element("td", {}),
+      element("th", { scope: "row" }, name),
+      free === null ? cell("") : numberCell(String(free), free),
+      ...errors.map((it) => (it === null ? cell("") : numberCell(plain(it), it))),
+      jnds === null ? cell("") : numberCell(plain(jnds, 2), jnds),
+      cell(""),
+      element("td", {}, remark),
+    );
+  };
+  return [
+    row("straight line", 2, [line_rmse, null, null], "of force over penetration"),
+    floor?.velocity == null ? null : row("floor", null, [null, floor.velocity, null], "best map of position and speed"),
+  ].filter((it) => it !== null);
 }
 
 /** Every law that was fitted, the least error first; one of them is looked at. */
@@ -68,9 +91,7 @@ export class FitTable {
         element("td", {}, box),
         element("th", { scope: "row" }, open),
         numberCell(String(fit.free_parameters), fit.free_parameters),
-        numberCell(withUnit(fit.rmse, unit), fit.rmse),
-        numberCell(withUnit(fit.cv_rmse, unit), fit.cv_rmse),
-        numberCell(withUnit(fit.cv_rmse_rendered, unit), fit.cv_rmse_rendered),
+        ...[fit.rmse, fit.cv_rmse, fit.cv_rmse_rendered].map((it) => numberCell(plain(it), it)),
         numberCell(plain(errorOf(fit) / file.jnd, 2), errorOf(fit) / file.jnd),
         numberCell(fit.bic.toFixed(0).replace("-", "−"), fit.bic),
         element("td", {}, marks.join(", ")),
@@ -92,15 +113,16 @@ export class FitTable {
           head("draw", false, ""),
           head("law", false),
           head("free", true, "free parameters"),
-          head("error", true, `error [${unit}]`),
-          head("held out", true, `held-out error [${unit}]`),
-          head("as rendered", true, `held-out error as rendered [${unit}]`),
+          head(`error [${unit}]`),
+          head(`held out [${unit}]`, true, `held-out error [${unit}]`),
+          head(`held out as rendered [${unit}]`, true, `held-out error as rendered [${unit}]`),
           head("in JNDs", true, "error [JND]"),
           head("BIC"),
           head("", false, "remarks"),
         ),
       ),
       body,
+      element("tfoot", {}, ...references(file)),
     );
     this.root = element(
       "div",

@@ -1,11 +1,10 @@
 import type { View } from "../ui/view";
-import { chart } from "../views/chart";
 import { devices } from "../views/devices";
 import { editor } from "../views/editor";
-import { fits } from "../views/fits";
 import { importView } from "../views/import";
 import { recording } from "../views/recording";
 import { recordings } from "../views/recordings";
+import { chart, fits } from "../views/results";
 import { scope } from "../views/scope";
 import { sessions } from "../views/sessions";
 import { stability } from "../views/stability";

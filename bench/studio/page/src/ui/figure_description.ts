@@ -14,6 +14,7 @@ export interface FigureCurve {
   of: readonly number[]; // the number of what each point stands for; empty: of nothing
   name?: string; // of its column in a table, where the label does not say it
   marked?: boolean; // with its colour's shape along it, so that not the colour alone tells it from others
+  order?: number; // its place in an order, from 0 to 1, which gives it a colour of a sequence
 }
 /** What lies between two lines over x; null breaks it. */
 export interface FigureArea {
@@ -51,13 +52,21 @@ export interface FigureTick {
   at: number | null;
   name: string;
 }
+/** A stretch of x, behind everything. */
+export interface FigureBand {
+  begin: number | null;
+  end: number | null;
+  colour: Colour;
+  label?: string; // none: not in the legend
+}
 export interface Figure {
   title?: string;
   x_label: string; // with its unit: "time [s]"
   y_label: string;
   curves: FigureCurve[];
   areas?: FigureArea[];
-  bands?: { begin: number | null; end: number | null; colour: Colour }[]; // of x
+  bands?: FigureBand[];
+  ordered?: string; // what the order of its curves is, in the words of the legend
   cells: FigureCells;
   vertical: FigureMarker[];
   horizontal: FigureMarker[];

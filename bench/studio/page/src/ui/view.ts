@@ -64,9 +64,14 @@ export interface OpenRecording {
   readonly id: string;
   readonly name: string; // path within the workspace
   readonly about: Recording;
-  readonly workspace: Workspace; // as it was when the recording was opened
+  readonly workspace: Workspace; // as it was when the recording was read
   /** What it is worth; asked for once, and shared by the tabs. */
   inspection: () => Promise<RecordingInspection>;
+  /**
+   * Before the page itself writes the file, and what is called when that has ended: what is here is then of the new file
+   * without a tab beginning again, and nobody is told that it has changed. `read` is called once it is.
+   */
+  writing: () => (written: boolean, read?: () => void) => void;
   /** Reads it anew, after it has been changed: all tabs begin again, with the same state. */
   reload: () => void;
 }

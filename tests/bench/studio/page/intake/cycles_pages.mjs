@@ -48,6 +48,14 @@ async function handleOf(page, cycle) {
   await until("it has handles", async () =>
     (await handle.getAttribute("aria-valuetext"))?.startsWith(`cycle ${cycle}:`),
   );
+  let was = "";
+  await until("they have come to rest", async () => {
+    await page.waitForTimeout(150);
+    const now = JSON.stringify(await handle.boundingBox());
+    const rests = now === was;
+    was = now;
+    return rests;
+  });
   return handle;
 }
 
@@ -172,6 +180,67 @@ export const tests = {
     expectNoComplaints(page);
   },
 
+  async SplitsACycleAndMergesItAgain({ browser, studio }) {
+    const page = await prepare({ browser, studio });
+    const before = await view(studio);
+    const all = await count(page);
+    await handleOf(page, 3);
+    await page.keyboard.press("m");
+    await until("two are one", async () => (await count(page)) === all - 1);
+    await page.getByRole("button", { name: "Undo", exact: true }).click();
+    await until("they are two again", async () => (await count(page)) === all);
+    await page.getByRole("button", { name: "Merge with the next" }).click();
+    await until("by a button too", async () => (await count(page)) === all - 1);
+    await page.getByLabel("Edited by").fill("Mo");
+    await save(page);
+    await saved(page);
+    expect(info(studio).edits[0].what.startsWith("cycles 3 and 4, which met at"), info(studio).edits[0].what);
+    expectEqual(info(studio).count, all - 1, "cycles in the recording");
+
+    // By the pointer: in the closing of what was the fourth.
+    await page.getByRole("button", { name: "Show cycle 3", exact: true }).first().click();
+    const { begin, end } = await page.evaluate(() => {
+      const handles = [...document.querySelectorAll(".cycle_handle")].map((it) => it.getBoundingClientRect().x + 12);
+      return { begin: Math.min(...handles), end: Math.max(...handles) };
+    });
+    const over = await page.locator(".cycle_plots .time_over").first().boundingBox();
+    await page.getByRole("button", { name: "Split …" }).click();
+    await page.mouse.click(begin + 0.5 * (end - begin), over.y + over.height / 2);
+    await until("one is two", async () => (await count(page)) === all);
+    await page.keyboard.press("Control+z");
+    await until("it is one again", async () => (await count(page)) === all - 1);
+    await page.mouse.move(begin + 0.5 * (end - begin), over.y + over.height / 2);
+    await page.keyboard.press("s");
+    await until("by its key it is two", async () => (await count(page)) === all);
+    await save(page);
+    await saved(page);
+    expect(/^cycle 3 split at .* into 3 and 4$/.test(info(studio).edits[1].what), info(studio).edits[1].what);
+    studio.kerfOrThrow("validate", "cut.h5");
+    const after = await view(studio);
+    expectEqual(
+      after.phases.map((it) => it[0]),
+      before.phases.map((it) => it[0]),
+      "cycles of the phases",
+    );
+    expectNoComplaints(page);
+  },
+
+  async SaysWhyACycleCannotBeSplit({ browser, studio }) {
+    const page = await prepare({ browser, studio });
+    const all = await count(page);
+    await handleOf(page, 3);
+    const x = await page.evaluate(() =>
+      Math.max(...[...document.querySelectorAll(".cycle_handle")].map((it) => it.getBoundingClientRect().x + 12)),
+    );
+    const over = await page.locator(".cycle_plots .time_over").first().boundingBox();
+    await page.mouse.move(x - 20, over.y + over.height / 2); // in its opening, beside the handle
+    await page.keyboard.press("s");
+    await until("why not is said", async () => (await page.textContent(".cycle_trouble")).includes("hold no closing"));
+    expectEqual(await count(page), all, "cycles");
+    expectEqual(await state(page), "as saved", "nothing has changed");
+    expectNoComplaints(page, [/400/]);
+  },
+
   async RefusesTheSecondOfTwoTabsAndLosesNothing({ browser, studio }) {
     const [one, two] = [await prepare({ browser, studio }), await prepare({ browser, studio })];
     await dragged(one, await handleOf(one, 2), 12);
@@ -213,7 +282,7 @@ export const tests = {
     await page.context().close();
 
     const again = await prepare({ browser, studio });
-    await drag(again, await handleOf(again, 2), 12);
+    await dragged(again, await handleOf(again, 2), 12);
     rmSync(join(studio.folder, "cut.h5"));
     await save(again);
     await until("that it is gone is said", async () =>

@@ -41,6 +41,15 @@ async function source(studio, name, text) {
 const choose = (page, ...files) => page.setInputFiles("main.import input[type=file]", files);
 const fits = (page) => until("it fits", async () => (await page.textContent(".verdict")).startsWith("It fits"));
 
+const columnOf = (number) => `.preview thead th:nth-child(${number + 1})`;
+const channelOf = (number) => `${columnOf(number)} select.channel`;
+const unitOf = (number) => `${columnOf(number)} select.unit`;
+async function choosesUnit(page, number, channel, unit) {
+  await page.selectOption(channelOf(number), channel);
+  await until("its units are offered", async () => page.locator(`${unitOf(number)} option[value="${unit}"]`).count());
+  await page.selectOption(unitOf(number), unit);
+}
+
 async function importAll(page) {
   await page.getByRole("button", { name: /^Import/ }).click();
   await until("it is imported", async () => (await page.locator(".file_list li.file_done").count()) > 0);
@@ -81,16 +90,20 @@ export const tests = {
     const page = await prepare({ browser, studio });
     await choose(page, await source(studio, "plain.txt", press().split("\n").slice(3).join("\n")));
     await until("it is looked at", async () => (await page.locator(".preview thead th").count()) === 5);
-    await page.selectOption(".preview thead th:nth-child(2) select", "time");
-    await page.fill(".preview thead th:nth-child(2) input.unit", "ms");
-    await page.selectOption(".preview thead th:nth-child(3) select", "position");
-    await page.fill(".preview thead th:nth-child(3) input.unit", "deg");
-    await page.selectOption(".preview thead th:nth-child(4) select", "force");
-    await page.fill(".preview thead th:nth-child(4) input.unit", "kg");
+    await choosesUnit(page, 1, "time", "ms");
+    await choosesUnit(page, 2, "position", "deg");
+    await page.selectOption(channelOf(3), "force");
+    await page.selectOption(unitOf(3), "another");
+    await page.keyboard.type("kg"); // whoever chooses another one types at once
     await until("what does not fit is said", async () =>
       (await page.textContent(".verdict.wrong").catch(() => "")).includes("is not a unit of force"),
     );
-    await page.fill(".preview thead th:nth-child(4) input.unit", "N");
+    expectEqual(
+      (await page.locator(`${unitOf(3)} option`).allTextContents()).slice(0, 5),
+      ["– unit –", "N", "mN", "kN", "gf"],
+      "units of a force",
+    );
+    await page.selectOption(unitOf(3), "N");
     await fits(page);
     expectEqual(await page.inputValue("input.map"), "time=1[ms],position=2[deg],force=3[N]", "the map");
     await page.fill("input[aria-label='Name to save the mapping under']", "bench7");
@@ -102,6 +115,32 @@ export const tests = {
     await until("it is offered", async () =>
       (await page.locator(".mapping option").allTextContents()).includes("bench7"),
     );
+    expectNoComplaints(page);
+  },
+
+  async TakesTheColumnThatCountsOnForTheTime({ browser, studio }) {
+    const page = await prepare({ browser, studio });
+    const numbers = press()
+      .split("\n")
+      .filter((it) => /^\d/.test(it))
+      .map((it, i) =>
+        [...it.split(",").slice(1).reverse(), "7", String(1783000 + 3 * i + (i % 3 === 0 ? 1 : 0))].join("\t"),
+      );
+    await choose(page, await source(studio, "unnamed.txt", `${numbers.join("\n")}\n`));
+    await fits(page);
+    expectEqual(await page.inputValue("input.map"), "time=4[ms],position=1[mm],force=2[N]", "what is suggested");
+    expectEqual(await page.inputValue(channelOf(4)), "time", "the fourth of four unnamed columns");
+    await page.selectOption(channelOf(4), "");
+    const verdict = () => page.textContent(".verdict");
+    await until("where to click is said", async () =>
+      (await verdict()).includes("choose 'time' above one, or fill in 'Rate, without a time column [Hz]'"),
+    );
+    await page.getByLabel("Rate, without a time column [Hz]").fill("400");
+    await fits(page);
+    await page.selectOption(channelOf(2), "position");
+    await page.selectOption(unitOf(2), "");
+    await until("so it is for a unit", async () => (await verdict()).includes("choose one below its name"));
+    expect(!(await verdict()).includes("--"), `in words of the page: ${await verdict()}`);
     expectNoComplaints(page);
   },
 
@@ -212,7 +251,7 @@ export const tests = {
     page.on("request", (it) => (pieces += it.url().includes("/api/import/piece") ? 1 : 0));
     await choose(page, file);
     await until("it is refused in one line", async () =>
-      ((await page.textContent(".file_said").catch(() => "")) ?? "").includes("kerf import --max-bytes"),
+      ((await page.textContent(".file_said").catch(() => "")) ?? "").includes("kerf import at a terminal"),
     );
     expectEqual(pieces, 0, "pieces that were sent");
     await rm(file);

@@ -56,7 +56,9 @@ export class ParallelPlot {
     const last = sample.columns[sample.columns.length - 1] ?? "";
     this.svg.setAttribute("aria-label", `Parallel coordinates of ${names.join(", ")}, in the colour of ${last}`);
     const counts = `${sample.state.length} of ${sample.of} cells, taken by chance, a line each, in the colour of ${last}.`;
-    this.words.textContent = `${counts} At "?" below an axis: no number; dashed: the cell failed or is missing. Drag along an axis to filter; Filters below does the same by hand.`;
+    this.words.textContent =
+      `${counts} At "?" below an axis: no number; dashed: the cell failed or is missing. ` +
+      "Drag along an axis to filter; Filters below does the same by hand.";
     this.draw();
   }
 

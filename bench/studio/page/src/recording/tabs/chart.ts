@@ -1,6 +1,6 @@
 import "../../views/results.css";
 
-import { ChartsOfRecording } from "../../results/of_recording/charts";
+import { chartsOf } from "../../results/of_recording/charts";
 import type { RecordingTab } from "../../ui/view";
 
 /** Cost against error of every law and size, and the simplest that serves. */
@@ -8,7 +8,7 @@ export const chartTab: RecordingTab = {
   name: "chart",
   title: "Chart",
   mount(root, context, recording) {
-    const charts = new ChartsOfRecording(context, recording);
+    const charts = chartsOf(context, recording);
     root.append(charts.root);
     return () => charts.end();
   },

@@ -1,6 +1,6 @@
 import "../../views/results.css";
 
-import { FitsOfRecording } from "../../results/of_recording/fits";
+import { fitsOf } from "../../results/of_recording/fits";
 import type { RecordingTab } from "../../ui/view";
 
 /** Laws fitted to the recording: the newest fit, those before it, and a new one. */
@@ -8,7 +8,7 @@ export const fitsTab: RecordingTab = {
   name: "fits",
   title: "Fits",
   mount(root, context, recording) {
-    const fits = new FitsOfRecording(context, recording);
+    const fits = fitsOf(context, recording);
     root.append(fits.root);
     return () => fits.end();
   },

@@ -41,7 +41,8 @@ function band({ model, colour, residuals }: ComparedLaw, branch: Branch): Figure
   const { x, y, places } = known(residuals.penetration, residuals.loop[`law_${branch}`]);
   const edge = (sign: 1 | -1): (number | null)[] =>
     y.map((it, k) => (it === null ? null : it + sign * (half[places[k]!] ?? NaN)));
-  return [{ label: "", x, low: edge(-1), high: edge(1), colour, name: `${model} ${branch} interval` }];
+  const label = `interval of ${model}, ${100 * residuals.interval!.confidence} %`;
+  return [{ label, x, low: edge(-1), high: edge(1), colour, name: `${model} ${branch} interval` }];
 }
 
 /** What was measured, solid, and laws over it, dashed, with the intervals of their force; out of the tissue thin. */
@@ -58,14 +59,12 @@ export function lawsOverData(laws: readonly ComparedLaw[]): Figure {
       lineOfBranch(residuals, "law", branch, branch === "closing" ? model : "", { colour, dashed: true, name: model }),
     ),
   );
-  const confidence = laws.map((it) => it.residuals.interval?.confidence).find((it) => it !== undefined);
-  const told =
-    confidence === undefined ? "" : ` Bands: intervals of the law's force, ${100 * confidence} %, without noise.`;
+  const told = laws.some((it) => it.residuals.interval) ? " Intervals are of the law's force, without noise." : "";
   return figureOf(`penetration [${of.position_unit}]`, `force [${of.force_unit}]`, {
     curves: [...measured, ...curves],
     areas: laws.flatMap((law) => branches.flatMap((branch) => band(law, branch))),
     y_range: rangeAround([...measured, ...curves].map((it) => it.y)), // an interval may reach anywhere
-    notes: [`Means of each penetration, over rows in and out of contact.${told}`],
+    notes: [`Means of each penetration, over the rows that laws are judged by.${told}`],
   });
 }
 
@@ -74,7 +73,7 @@ export function residualsOverPenetration(laws: readonly ComparedLaw[]): Figure {
   const of = laws[0]!.residuals;
   const deviations = laws.map(
     ({ model, colour, residuals }): FigureArea => ({
-      label: "",
+      label: laws.length > 1 ? `${model}, ± standard deviation` : "± standard deviation",
       x: residuals.penetration,
       low: residuals.low,
       high: residuals.high,
@@ -82,7 +81,7 @@ export function residualsOverPenetration(laws: readonly ComparedLaw[]): Figure {
       name: `${model} standard deviation`,
     }),
   );
-  return figureOf(`penetration [${of.position_unit}]`, `law − measured [${of.force_unit}]`, {
+  return figureOf(`penetration [${of.position_unit}]`, `measured − law [${of.force_unit}]`, {
     areas: [jndBand(of, of.penetration), ...deviations],
     curves: laws.map(({ model, colour, residuals }) =>
       lineOf(model, residuals.penetration, residuals.mean, { colour, name: `${model} mean`, marked: laws.length > 1 }),

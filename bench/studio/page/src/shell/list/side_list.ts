@@ -3,6 +3,7 @@ import "./side_list.css";
 import type { Api } from "../../api/api";
 import type { StudyEntry } from "../../api/studies";
 import type { Thumbnail, Workspace } from "../../api/workspace";
+import { waysToARecording } from "../../recordings/recording_list";
 import { button, element, select } from "../../ui/dom";
 import { chosen, countOf, entriesOf, kinds, orders, type Entry, type Kind, type Order } from "./entries";
 import { Thumbnails } from "./thumbnails";
@@ -115,10 +116,9 @@ export class SideList {
     this.list.point(found.findIndex((it) => it.id === this.open));
     const of = found.length === all.length ? "" : ` of ${all.length.toLocaleString("en-GB")}`;
     const unlooked = workspace.unlooked > 0 ? `; ${workspace.unlooked} not looked into yet` : "";
-    this.count.textContent =
-      all.length === 0
-        ? none[kind]
-        : `${found.length.toLocaleString("en-GB")}${of} ${found.length === 1 ? one[kind] : kind}${unlooked}`;
+    if (all.length === 0) this.count.replaceChildren(...none[kind]());
+    else
+      this.count.textContent = `${found.length.toLocaleString("en-GB")}${of} ${found.length === 1 ? one[kind] : kind}${unlooked}`;
     this.markRows();
   }
 
@@ -166,10 +166,10 @@ export class SideList {
 }
 
 const one: Record<Kind, string> = { recordings: "recording", studies: "study", sessions: "session" };
-const none: Record<Kind, string> = {
-  recordings: "No recording yet: the scope makes them, and so do kerf record and kerf import.",
-  studies: "No study yet: kerf study new makes one.",
-  sessions: "No session yet: kerf session new makes one.",
+const none: Record<Kind, () => (string | HTMLElement)[]> = {
+  recordings: waysToARecording,
+  studies: () => ["No study yet: kerf study new makes one."],
+  sessions: () => ["No session yet: kerf session new makes one."],
 };
 
 /** What a file is called and where it lies: "cut" and "day_2"; of a study's "recording.h5" the other way round. */

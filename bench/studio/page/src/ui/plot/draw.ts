@@ -59,7 +59,7 @@ export function dashOf(style: Style): readonly number[] {
 }
 
 function curveShape(curve: FigureCurve, frame: Frame, style: Style): Shape {
-  const colour = style.colours[curve.colour];
+  const colour = curve.order === undefined ? style.colours[curve.colour] : style.ordered(curve.order);
   const kind = `curve ${curve.colour}${curve.name ? ` ${curve.name.replace(/\W+/g, "_")}` : ""}`;
   if (curve.mark === "boxes")
     return { kind: "path", class: kind, d: boxPath(curve, frame), fill: colour, opacity: 0.6 };
@@ -178,8 +178,12 @@ function bandsOf({ bands = [] }: Figure, frame: Frame, style: Style): Shape[] {
       Math.min(frame.right, Math.max(frame.left, it)),
     );
     const d = `M${px(from!)} ${px(frame.top)}H${px(to!)}V${px(frame.bottom)}H${px(from!)}Z`;
-    return [{ kind: "path", class: "band", d, fill: style.colours[colour], opacity: 0.12 }];
+    return [bandShape(d, colour, style)];
   });
+}
+
+export function bandShape(d: string, colour: Colour, style: Style): Shape {
+  return { kind: "path", class: `band ${colour}`, d, fill: style.colours[colour], opacity: 0.16 };
 }
 
 /** The mark of a point, larger than others by so much. */

@@ -1,8 +1,8 @@
 import { drawn, element } from "../dom";
-import type { Colour, Figure, FigureArea, FigureCurve } from "../figure_description";
+import type { Colour, Figure, FigureArea, FigureBand, FigureCurve } from "../figure_description";
 import { markPath } from "../marks";
 import { groundOf } from "./cells";
-import { dashOf, isLine, markShape } from "./draw";
+import { bandShape, dashOf, isLine, markShape } from "./draw";
 import { nodeOf, type Shape } from "./shapes";
 import type { Style } from "./style";
 
@@ -15,7 +15,7 @@ export interface Entry {
 const finite = (value: number | null | undefined): boolean => Number.isFinite(value);
 
 /** What of a figure has a name; each once. */
-export function entriesOf({ cells, areas = [], curves }: Figure): Entry[] {
+export function entriesOf({ cells, areas = [], bands = [], curves, ordered }: Figure): Entry[] {
   const entries: Entry[] = cells.kinds.map((kind) => ({
     label: kind.label,
     sample: (x, y, width, height, style) => groundOf([{ x, y, width, height }], kind, style),
@@ -26,6 +26,8 @@ export function entriesOf({ cells, areas = [], curves }: Figure): Entry[] {
     const there = curve.y.some((y, i) => finite(y) && finite(curve.x[i]));
     entries.push({ label: curve.label + (there ? "" : " (nowhere here)"), sample: curveSample(curve) });
   }
+  if (ordered) entries.push({ label: ordered, sample: sequenceSample });
+  for (const band of bands) if (band.label) entries.push({ label: band.label, sample: bandSample(band) });
   return entries.filter((it, i) => entries.findIndex((other) => other.label === it.label) === i);
 }
 
@@ -37,6 +39,20 @@ function shapeOf(colour: Colour, x: number, y: number, style: Style): Shape {
     d: markPath(colour, x, y, 0.28 * style.text),
     fill: style.colours[colour],
   };
+}
+
+const steps = 8;
+
+/** From the first to the last. */
+function sequenceSample(x: number, y: number, width: number, height: number, style: Style): Shape[] {
+  return Array.from({ length: steps }, (_, i): Shape => {
+    const d = `M${x + (width * i) / steps} ${y + height / 4}h${width / steps}v${height / 2}h${-width / steps}Z`;
+    return { kind: "path", class: "sample ordered", d, fill: style.ordered(i / (steps - 1)) };
+  });
+}
+
+function bandSample({ colour }: FigureBand): Entry["sample"] {
+  return (x, y, width, height, style) => [bandShape(`M${x} ${y}h${width}v${height}h${-width}Z`, colour, style)];
 }
 
 function areaSample({ colour, extremes, marked }: FigureArea): Entry["sample"] {

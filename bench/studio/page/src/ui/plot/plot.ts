@@ -193,10 +193,9 @@ export class Plot implements Movable {
     this.svg.setAttribute("tabindex", "0");
     if (!this.options.ownArrows) this.svg.setAttribute("role", "application");
     this.svg.setAttribute("aria-roledescription", "plot");
-    this.svg.setAttribute(
-      "aria-label",
-      `${this.name}. Plus and minus zoom, Shift and arrows move along, 0 shows all${this.options.ownArrows ? "" : ", arrows read out points"}.`,
-    );
+    const arrows = this.options.ownArrows ? "" : ", arrows read out points";
+    const keys = `Plus and minus zoom, Shift and arrows move along, 0 shows all${arrows}.`;
+    this.svg.setAttribute("aria-label", `${this.name}. ${keys}`);
     gestures(this.svg, this);
     this.svg.addEventListener("keydown", (event) => {
       if (event.target === this.svg || this.options.ownArrows) pictureKey(event, this, !this.options.ownArrows);

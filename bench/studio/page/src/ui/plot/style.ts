@@ -1,5 +1,6 @@
 import type { Colour } from "../figure_description";
 import { palette } from "../palette";
+import { orderedInPrint, orderedOnScreen } from "../sequential";
 
 /** How a figure is drawn: in pixels of the page, or in points of a printed one. */
 export interface Style {
@@ -17,6 +18,7 @@ export interface Style {
   grid: string;
   card: string;
   colours: Record<Colour, string>;
+  ordered: (share: number) => string; // colours of a sequence
   cell: Partial<Record<Colour, string>>; // grounds of a map's cells
   hatch: string;
 }
@@ -40,6 +42,7 @@ export function screenStyle(): Style {
     grid,
     card,
     colours: { ...(colours as Record<Colour, string>), black: ink },
+    ordered: orderedOnScreen,
     cell: { sky, orange },
     hatch,
   };
@@ -71,6 +74,7 @@ export const printStyle: Style = {
     yellow: "#7d7a00",
     grey: "#6b7680",
   },
+  ordered: orderedInPrint,
   cell: { sky: "#dcebf6", orange: "#f8e3cf" },
   hatch: "#a5642a",
 };

@@ -80,7 +80,7 @@ function cellColumns({ cells, x_label, y_label }: Figure): CsvColumn[] {
 /** A table of the page, with the numbers that its cells stand for: `data-value` where a cell has one, `data-head` likewise. */
 export function tableColumns(table: HTMLTableElement): CsvColumn[] {
   const heads = [...(table.tHead?.rows[0]?.cells ?? [])];
-  const rows = [...table.tBodies].flatMap((body) => [...body.rows]);
+  const rows = [...table.tBodies, table.tFoot].flatMap((part) => [...(part?.rows ?? [])]);
   return heads.flatMap((head, i) => {
     const title = (head.dataset.head ?? head.textContent).trim();
     const cells = rows.map((row) => cellValue(row.cells[i]));

@@ -1,0 +1,59 @@
+import type { PreviewColumn } from "../api/intake";
+import { element } from "../ui/dom";
+
+const another = "another";
+
+/** The unit of a column: one of those that its channel may have, the file's, or any other that is typed. */
+export class UnitField {
+  readonly root: HTMLElement;
+  private readonly list: HTMLSelectElement;
+  private readonly text: HTMLInputElement;
+  private offered = "";
+
+  constructor(
+    private readonly column: PreviewColumn,
+    changed: (unit: string) => void,
+  ) {
+    const label = `Unit of column ${column.number}, ${column.name || `column ${column.number}`}`;
+    this.list = element("select", {
+      class: "unit",
+      "aria-label": label,
+      change: () => {
+        const types = this.list.value === another;
+        this.text.hidden = !types;
+        if (types)
+          this.text.select(); // what is typed takes its place
+        else changed(this.list.value);
+      },
+    });
+    this.text = element("input", {
+      class: "unit",
+      "aria-label": `${label}, as text`,
+      placeholder: "0.01 N",
+      maxlength: 40,
+      spellcheck: "false",
+      hidden: true,
+      input: () => changed(this.text.value.trim()),
+    });
+    this.root = element("span", { class: "unit_field" }, this.list, this.text);
+  }
+
+  /** The unit that is chosen (empty: the file's), and those to choose from; what somebody types stays theirs. */
+  show(unit: string, units: readonly string[], disabled: boolean): void {
+    this.list.disabled = this.text.disabled = disabled;
+    if (document.activeElement === this.text) return;
+    const values = ["", ...units, ...(unit === "" || units.includes(unit) ? [] : [unit]), another];
+    const offered = values.join("\n");
+    if (offered !== this.offered) {
+      this.offered = offered;
+      const words: Record<string, string> = {
+        "": this.column.unit ? `${this.column.unit}, as the file says` : "– unit –",
+        [another]: "another …",
+      };
+      this.list.replaceChildren(...values.map((it) => element("option", { value: it }, words[it] ?? it)));
+    }
+    this.list.value = unit;
+    this.text.hidden = true;
+    this.text.value = unit;
+  }
+}
