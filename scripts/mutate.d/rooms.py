@@ -16,7 +16,7 @@ ROOMS = [
     Room("compare", ("kerf_compare_test",)),
     Room("fitting/psychophysics", ("kerf_psychophysics_test",), ("fitting/psychophysics/benchmarks",)),
     Room("fitting/population", ("kerf_population_test",), ("fitting/population/benchmarks",)),
-    Room("fitting", ("kerf_fitting_test",), ("fitting/benchmarks", "fitting/population", "fitting/psychophysics")),
+    Room("fitting", ("kerf_fitting_test", "kerf_events_test"), ("fitting/benchmarks", "fitting/population", "fitting/psychophysics")),
     Room("bench/data", ("kerf_data_test",)),
     Room("bench/runtime", ("kerf_runtime_test",),
          ("bench/runtime/record/push_benchmark.cpp", "bench/runtime/loop/blame_benchmark.cpp")),

@@ -35,8 +35,8 @@ std::vector<Stretches> values_of(const TextLayout& layout, std::string_view text
     const auto lines = lines_from(data.substr(std::max(begin, end)), begin > 0 && begin > end);
     if (lines.empty()) break;
     end = static_cast<std::size_t>(lines.back().data() + lines.back().size() - data.data());
-    end = std::min(data.size(),
-                   data.find('\n', end) == std::string_view::npos ? data.size() : data.find('\n', end) + 1);
+    const std::size_t line_end = data.find('\n', end);
+    end = line_end == std::string_view::npos ? data.size() : line_end + 1;
     for (Stretches& stretches : values) stretches.emplace_back();
     for (const std::string_view line : lines) {
       const auto fields = split_line(line, layout.separator);
@@ -91,8 +91,8 @@ std::optional<Ticking> ticking_of(const Stretches& stretches) {
 std::optional<TimeColumn> find_time_column(const TextLayout& layout, std::string_view text,
                                            const std::vector<std::size_t>& columns) {
   const std::vector<Stretches> values = values_of(layout, text, columns);
-  std::optional<std::tuple<bool, long, std::size_t>>
-      best;  // what two columns share to a percent is no difference
+  // By evenness to a percent: less is no difference between two columns.
+  std::optional<std::tuple<bool, long, std::size_t>> best;
   std::optional<TimeColumn> found;
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const auto ticking = ticking_of(values[i]);

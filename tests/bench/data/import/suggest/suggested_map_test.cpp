@@ -75,7 +75,7 @@ TEST(SuggestedMap, TakesNoColumnForTheTimeThatOnlySometimesGrows) {
   EXPECT_EQ(with([](int row) { return row < 450 ? 0.01 * row : 9.0 - 0.01 * row; }), by_place)
       << "to and fro";
   EXPECT_EQ(with([](int row) { return std::exp(0.05 * row); }), by_place) << "ever faster";
-  EXPECT_EQ(with([](int row) { return 0.01 * (row / 4); }), by_place) << "in stairs";
+  EXPECT_EQ(with([](int row) { return 0.01 * std::floor(row / 4.0); }), by_place) << "in stairs";
   const std::string by_time = "--map 'time=3[s],position=1[mm],force=2[N]'";
   EXPECT_EQ(with([](int row) { return 0.01 * row + (row > 400 ? 5.0 : 0.0); }), by_time) << "a gap";
   EXPECT_EQ(with([](int row) { return 0.01 * (row % 300 == 7 ? row - 1 : row); }), by_time) << "a line twice";
