@@ -169,9 +169,12 @@ FitResult fit_samples(std::string_view model, const Samples& samples, const FitO
   measure(result, law, samples, options);
   estimate_parameters(result, law.problem, samples, law.weights, law.solution, options, law.loss);
   tell_a_part(options);
-  if (!result.converged && result.undetermined_arms > 0) {  // a valley without an end, and all of it as good
+  // A valley without an end, and all of it as good.
+  if (!result.converged && result.undetermined_arms + result.undetermined_directions > 0) {
     result.converged = true;
-    result.message = "the sum of squares stands still along an arm that is not determined";
+    result.message = result.undetermined_arms > 0
+                         ? "the sum of squares stands still along an arm that is not determined"
+                         : "the sum of squares stands still along a change that the data do not tell";
   }
   result.weigh_information(result.effective_samples / std::max(1.0, result.correlation_time));
   cross_validate(result, options, samples, memory);

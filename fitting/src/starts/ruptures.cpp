@@ -2,7 +2,7 @@
 #include <cmath>
 #include <utility>
 
-#include "starts/fracture_fit.h"
+#include "starts/ruptures.h"
 
 namespace kerf::fitting {
 namespace {

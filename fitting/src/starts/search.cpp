@@ -6,8 +6,9 @@
 
 #include <kerf/models/foreign.h>
 
+#include "fracture/fracture_fit.h"
 #include "segmented/segmented_law.h"
-#include "starts/fracture_fit.h"
+#include "starts/ruptures.h"
 #include "starts/scan.h"
 #include "starts/threshold.h"
 #include "tables.h"

@@ -15,6 +15,8 @@ struct Solution {
   std::string message;
   double squares = 0.0;    ///< r'r there
   Eigen::MatrixXd normal;  ///< J'J of the searched coordinates near there; empty where no search has it
+  /// Near further minima, of a law that may have several: one set of values each.
+  Values rivals;
 };
 
 /// What a law needs before its parameters can be searched: options that follow from the data (range and loop

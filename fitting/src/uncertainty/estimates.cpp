@@ -5,10 +5,10 @@
 #include <limits>
 #include <sstream>
 
+#include "fracture/fracture_intervals.h"
 #include "infinite.h"
 #include "tables.h"
 #include "uncertainty/arms.h"
-#include "uncertainty/events.h"
 #include "uncertainty/limits.h"
 #include "uncertainty/linearise.h"
 #include "uncertainty/profile.h"
@@ -170,6 +170,7 @@ class Estimation {
       if (inner.facts().search == models::Search::fracture && inner.coordinates() == problem_.coordinates())
         events_ = limits_by_events(inner, samples_, weights_, solution_, loss_, linear, uncertainty,
                                    options_.confidence);
+      if (!events_.warning.empty()) result_.warnings.push_back(events_.warning);
     }
     result_.correlation_time = std::min(uncertainty.correlation_time, static_cast<double>(samples_.size()));
     if (none) return take_none(inner);
@@ -217,6 +218,7 @@ class Estimation {
       if (std::ranges::all_of(unidentifiable.parts, told)) continue;
       std::vector<std::string> names;
       for (const auto& [place, share] : unidentifiable.parts) names.push_back(result_.searched[place]);
+      if (names.size() > 1) ++result_.undetermined_directions;
       std::string warning = names.size() == 1 ? hardly_known(names[0], limits[unidentifiable.parts[0].first])
                                               : describe(unidentifiable, result_.searched, logarithmic);
       unknowns_.push_back({std::move(names), std::move(warning)});

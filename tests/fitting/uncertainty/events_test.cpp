@@ -87,6 +87,29 @@ TEST(FractureEvents, IntervalsHoldAsTheySayUnderMuchNoise) {
   EXPECT_THAT(held_of(cracks(), 0.1, seeds, {0, 1, 2, 3}), testing::Each(HoldAsTheySay(seeds)));
 }
 
+/// The motion as an encoder tells it.
+test::Path by_steps_of(double step_m, test::Path path) {
+  for (models::Motion& motion : path) motion.penetration = step_m * std::round(motion.penetration / step_m);
+  return path;
+}
+
+TEST(FractureEvents, IntervalsHoldWhatFitsBestWhereAnEncoderMisfitsTheLaw) {
+  constexpr std::size_t seeds = 200;
+  const Scenario true_motion = cracks();
+  Scenario told = cracks();
+  told.path = by_steps_of(0.00025, told.path);
+  const auto rows = static_cast<Eigen::Index>(told.path.size());
+  const FitResult target = test::fitted(told, test::measured(true_motion, {}));
+  std::vector<std::size_t> held(4, 0);
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    const auto force = test::measured(true_motion, test::Noise::white().draw(rows, 0.02, seed));
+    const FitResult fit = test::fitted(told, force);
+    for (std::size_t k = 0; k < held.size(); ++k)
+      held[k] += test::holds(fit.parameters.at(k), target.parameters.at(k).value) ? 1 : 0;
+  }
+  EXPECT_THAT(held, testing::Each(HoldAsTheySay(seeds)));
+}
+
 TEST(FractureEvents, TellTheYieldEnergyBetweenTheDeepestWholeRowAndTheFirstThatBroke) {
   const Estimate energy = fitted(cracks(), 0.0, 1).parameters.at(2);
   EXPECT_EQ(energy.by, IntervalBy::profile);

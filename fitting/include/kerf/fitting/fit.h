@@ -162,6 +162,8 @@ struct FitResult {
   std::vector<std::string> searched;  ///< their names, in the order of that matrix
   std::vector<Profile> profiles;
   std::size_t undetermined_arms = 0;  ///< that the data do not tell from none: a simpler law says as much
+  std::size_t undetermined_directions =
+      0;  ///< changes of several parameters that leave the forces as they are
   bool converged = false;
   int iterations = 0;
   double seconds = 0.0;

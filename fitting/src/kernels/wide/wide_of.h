@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <kerf/models/exponential.h>
+#include <kerf/models/friction.h>
 #include <kerf/models/kelvin.h>
 #include <kerf/models/maxwell.h>
 #include <kerf/models/springpot.h>
@@ -12,6 +13,7 @@
 #include "kernels/law_kernel.h"
 #include "kernels/wide/arms.h"
 #include "kernels/wide/exponential.h"
+#include "kernels/wide/friction.h"
 #include "kernels/wide/springpot.h"
 
 namespace kerf::fitting::wide {
@@ -85,6 +87,17 @@ struct WideOf<models::Exponential> {
     Eigen::Index next = 2;
     if (reader.flag("viscous")) wide.derivatives(next++, 2) = 1.0;
     if (reader.flag("offset")) wide.derivatives(next, 3) = 1.0;
+    return wide;
+  }
+};
+
+template <>
+struct WideOf<models::Friction> {
+  static constexpr bool exists = true;
+  static std::optional<Wide<Friction>> at(const LawPoint& point) {
+    const auto law = models::Friction<double>::make(point.values, point.options);
+    Wide<Friction> wide{.law = Friction(law), .derivatives = Eigen::MatrixXd::Identity(5, 5)};
+    wide.derivatives(4, 4) = law.coulomb / law.presliding;
     return wide;
   }
 };

@@ -1,0 +1,74 @@
+#include "fracture/deformed_rows.h"
+
+#include "kernels/wide/packs.h"
+
+namespace kerf::fitting::wide {
+namespace {
+
+struct Columns {
+  const double* depth;
+  const double* moves;
+  const double* force;
+  const double* weight;
+  std::size_t padded;
+};
+
+KERF_WIDE_PACKETS void run(const Columns& rows, double amplitude, double rate, double shift,
+                           DeformedRows::Sums& into) {
+  Pack squares = all(0.0);
+  Pack s0 = all(0.0), s1 = all(0.0), s2 = all(0.0);
+  Pack n00 = all(0.0), n01 = all(0.0), n02 = all(0.0), n11 = all(0.0), n12 = all(0.0), n22 = all(0.0);
+  for (std::size_t i = 0; i < rows.padded; i += lanes) {
+    const Pack moves = load(&rows.moves[i]);
+    const Pack growth = rate * (load(&rows.depth[i]) - moves * shift);
+    const Pack force = amplitude * exp(growth);
+    const Pack residual = force - load(&rows.force[i]);
+    const Pack by_rate = force * growth;
+    const Pack by_shift = -rate * (force * moves);
+    const Pack weight = load(&rows.weight[i]);
+    const Pack weighed = weight * force;
+    const Pack weighed_rate = weight * by_rate;
+    const Pack weighed_shift = weight * by_shift;
+    squares += weight * residual * residual;
+    s0 += weighed * residual;
+    s1 += weighed_rate * residual;
+    s2 += weighed_shift * residual;
+    n00 += weighed * force;
+    n01 += weighed * by_rate;
+    n02 += weighed * by_shift;
+    n11 += weighed_rate * by_rate;
+    n12 += weighed_rate * by_shift;
+    n22 += weighed_shift * by_shift;
+  }
+  into.squares = sum(squares);
+  into.score = {sum(s0), sum(s1), sum(s2)};
+  into.normal = {sum(n00), sum(n01), sum(n02), sum(n11), sum(n12), sum(n22)};
+}
+
+}  // namespace
+
+void DeformedRows::reserve(std::size_t rows) {
+  for (auto* const column : {&depth_, &moves_, &force_, &weight_}) column->reserve(rows + lanes);
+}
+
+void DeformedRows::add(double depth_m, double moves, double force_n, double weight) {
+  depth_.push_back(depth_m);
+  moves_.push_back(moves);
+  force_.push_back(force_n);
+  weight_.push_back(weight);
+}
+
+void DeformedRows::end() {
+  count_ = depth_.size();
+  const std::size_t padded = (count_ + lanes - 1) / lanes * lanes;
+  for (auto* const column : {&depth_, &moves_, &force_, &weight_}) column->resize(padded, 0.0);
+}
+
+DeformedRows::Sums DeformedRows::sums(double amplitude_n, double rate_per_m, double shift_m) const noexcept {
+  Sums sums;
+  run({depth_.data(), moves_.data(), force_.data(), weight_.data(), depth_.size()}, amplitude_n, rate_per_m,
+      shift_m, sums);
+  return sums;
+}
+
+}  // namespace kerf::fitting::wide

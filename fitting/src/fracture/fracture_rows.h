@@ -1,0 +1,91 @@
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include <kerf/models/fracture.h>
+
+#include "fracture/deformed_rows.h"
+#include "fracture/fracture_coordinates.h"
+
+namespace kerf::fitting {
+
+/// A row of a path, and what the law made of it.
+struct FractureRow {
+  using Mode = models::Fracture<double>::Mode;
+  std::size_t at;
+  Mode mode;
+  bool pushes;   ///< there is a force
+  double tip;    ///< before it [m]
+  double depth;  ///< of the tool below that tip [m]
+  double moves;  ///< by how many cracks that ran ahead of the tool the tip had come there
+};
+
+/// Runs the law along the samples, at one depth of yielding and one length of crack, and shows every row to
+/// `take`. Which rows break does not depend on how stiff the tissue is.
+template <typename Take>
+void walk(const Problem& problem, const Samples& samples, double depth_m, double crack_m, Take&& take) {
+  constexpr double width_m = 0.01;
+  models::Fracture<double> law =
+      models::Fracture<double>::make(std::vector{1.0, 1e-6, 1.0, 1.0, width_m}, problem.law_options);
+  law.yield_energy =
+      law.amplitude * law.thickness / law.exponent * std::expm1(law.exponent * depth_m / law.thickness);
+  law.toughness = law.yield_energy / (crack_m * width_m);
+  for (const Run& run : samples.runs) {
+    models::Fracture<double>::State state;
+    double moves = 0.0;
+    for (std::size_t i = run.begin; i < run.end; ++i) {
+      const double tip = state.surface;
+      const double x = samples.motion[i].penetration;
+      const double force = law.step(state, samples.motion[i], samples.period_s[i]);
+      take(FractureRow{i, state.mode, force > 0.0, tip, x - tip, moves});
+      if (state.surface != tip) moves = state.surface > x ? moves + 1.0 : 0.0;
+    }
+  }
+}
+
+/// Where a search stands, and the sum of squares there.
+struct Standing {
+  Eigen::VectorXd at;
+  double squares = std::numeric_limits<double>::infinity();
+};
+
+/// The samples by what a path makes of them: whole, cutting, or without a force. While no row changes sides
+/// the sum of squares is smooth.
+class FractureRows {
+ public:
+  FractureRows(const RobustLoss& loss, double crack_m, std::size_t most_rows);
+
+  void add(const FractureRow& row, double force_n, double weight);
+  void end();
+
+  /// By all four coordinates, of which depth and crack leave every row on its side.
+  [[nodiscard]] Sums sums(const FractureCoordinates& coordinates, const Eigen::VectorXd& at) const;
+  /// Amplitude and exponent of least squares, from those of `at` on. Under another loss: `at`.
+  [[nodiscard]] Standing with_best_tissue(const FractureCoordinates& coordinates,
+                                          const Eigen::VectorXd& at) const;
+  /// The same by whole rows alone, and the crack by the force of cutting: of cracks that end behind the tool,
+  /// where no row's side depends on their length. Infinite where they do not.
+  [[nodiscard]] Standing with_short_crack(const FractureCoordinates& coordinates,
+                                          const Eigen::VectorXd& at) const;
+
+ private:
+  /// Rows of one force.
+  struct Cut {
+    std::vector<double> force, weight;
+    double weights = 0.0, mean = 0.0, about_the_mean = 0.0;
+  };
+  enum class Fitted { whole, whole_and_cut };
+  [[nodiscard]] Standing tissue(const FractureCoordinates& coordinates, const Eigen::VectorXd& at,
+                                Fitted which) const;
+  [[nodiscard]] Sums robust_sums(const Eigen::VectorXd& at, double rate, double shift,
+                                 const Eigen::Vector4d& cutting) const;
+
+  RobustLoss loss_;
+  double crack_m_;
+  wide::DeformedRows whole_;
+  Cut cut_;
+  double without_force_ = 0.0;  ///< sum of squares of rows that the law gives no force
+};
+
+}  // namespace kerf::fitting
