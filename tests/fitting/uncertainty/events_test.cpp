@@ -83,7 +83,7 @@ TEST(FractureEvents, OfCracksThatRunAheadAreFoundAndTheLawWithThem) {
 }
 
 TEST(FractureEvents, IntervalsHoldAsTheySayUnderMuchNoise) {
-  constexpr std::size_t seeds = 200;
+  constexpr std::size_t seeds = 100;
   EXPECT_THAT(held_of(cracks(), 0.1, seeds, {0, 1, 2, 3}), testing::Each(HoldAsTheySay(seeds)));
 }
 
@@ -94,7 +94,7 @@ test::Path by_steps_of(double step_m, test::Path path) {
 }
 
 TEST(FractureEvents, IntervalsHoldWhatFitsBestWhereAnEncoderMisfitsTheLaw) {
-  constexpr std::size_t seeds = 200;
+  constexpr std::size_t seeds = 100;
   const Scenario true_motion = cracks();
   Scenario told = cracks();
   told.path = by_steps_of(0.00025, told.path);
