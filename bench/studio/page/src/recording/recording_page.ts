@@ -59,7 +59,7 @@ export class RecordingPage {
     this.strip.mark(this.tab);
     try {
       const [workspace, about] = await Promise.all([
-        api.get<Workspace>("/api/workspace", {}, signal),
+        this.context.folder(),
         api.get<Recording>("/api/recording", { id }, signal),
       ]);
       const name = workspace.recordings.find((it) => it.id === id)?.name ?? id;
@@ -108,7 +108,7 @@ export class RecordingPage {
     const { id } = recording;
     try {
       const [workspace, about] = await Promise.all([
-        context.api.get<Workspace>("/api/workspace", {}, context.signal),
+        context.folder(),
         context.api.get<Recording>("/api/recording", { id }, context.signal),
       ]);
       Object.assign(recording, { about, workspace, inspection: this.inspectOnce(id) });
@@ -174,6 +174,11 @@ function forTab(page: PageContext): { context: Context; end: () => void } {
     },
     signal: gone.signal,
     state: { ...page.state, onChange: (listener) => page.state.onChange(() => gone.signal.aborted || listener()) },
+    folder: async () => {
+      const workspace = await page.folder();
+      gone.signal.throwIfAborted();
+      return workspace;
+    },
     onFolder: (listener) => page.onFolder((it) => gone.signal.aborted || listener(it)),
     offer: (...commands) => {
       const take = page.offer(...commands);
