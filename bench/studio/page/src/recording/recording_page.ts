@@ -1,5 +1,5 @@
 import type { Recording, RecordingInspection } from "../api/recordings";
-import type { Workspace, WorkspaceRecording } from "../api/workspace";
+import type { Workspace } from "../api/workspace";
 import { element } from "../ui/dom";
 import type { Context, OpenRecording, PageContext } from "../ui/view";
 import { factsInShort } from "./facts";
@@ -125,7 +125,7 @@ export class RecordingPage {
     const now = workspace.recordings.find((it) => it.id === id);
     const said = !now
       ? `${name} is not in the folder any more: what is shown was read before.`
-      : !now.partial && then && isNewer(now, then)
+      : !now.partial && then && (now.modified !== then.modified || now.bytes !== then.bytes)
         ? `${name} has changed in the folder: press R to read it anew.`
         : "";
     if (said && said !== this.said) this.context.say(said);
@@ -193,9 +193,4 @@ function forTab(page: PageContext): { context: Context; end: () => void } {
       for (const it of ends) it();
     },
   };
-}
-
-/** Times are told in whole seconds. */
-function isNewer(now: WorkspaceRecording, then: WorkspaceRecording): boolean {
-  return now.modified > then.modified || (now.modified === then.modified && now.bytes !== then.bytes);
 }
