@@ -1,5 +1,6 @@
 #include "files/for_terminal.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cstddef>
 #include <optional>
@@ -51,6 +52,8 @@ void show_next(std::string& shown, std::string_view& rest, std::string_view befo
   rest.remove_prefix(bytes);
 }
 
+constexpr bool is_plain(char c) noexcept { return c >= 0x20 && c < 0x7F && c != '\\'; }
+
 /// Whether JSON goes on with the number of a character that steers, "\u001b".
 bool begins_with_steering_number(std::string_view json) {
   constexpr std::size_t length = 6;
@@ -73,6 +76,11 @@ std::string json_for_page(std::string_view json) {
   std::string shown;
   shown.reserve(json.size());
   while (!json.empty()) {
+    const auto end = std::find_if_not(json.begin(), json.end(), is_plain);
+    const auto plain = static_cast<std::size_t>(end - json.begin());
+    shown += json.substr(0, plain);  // nearly all of it, at once
+    json.remove_prefix(plain);
+    if (json.empty()) break;
     if (json.front() != '\\' || json.size() < 2) {
       show_next(shown, json, "\\\\u");
       continue;

@@ -1,5 +1,4 @@
-// node build.mjs FOLDER: the page as studio.js, studio.css, studio.html, icon.svg, and parallel.js, which a page of a sweep loads
-// when it needs it, for embed.cmake.
+// node build.mjs FOLDER: the page as studio.js, studio.css, studio.html and icon.svg, for embed.cmake.
 import { build } from "esbuild";
 import { copyFile, mkdir } from "node:fs/promises";
 
@@ -7,7 +6,7 @@ const folder = process.argv[2];
 if (!folder) throw new Error("give the folder to write to");
 await mkdir(folder, { recursive: true });
 await build({
-  entryPoints: { studio: "src/main.ts", parallel: "src/atlas/parallel/brushes.ts" },
+  entryPoints: { studio: "src/main.ts" },
   bundle: true,
   minify: true,
   format: "iife",

@@ -15,6 +15,7 @@
 #include <kerf/schema/unfinished.h>
 #include <kerf/schema/validate.h>
 
+#include "host/realtime.h"
 #include "http/routes.h"
 #include "recordings/provenance.h"
 
@@ -84,15 +85,16 @@ Workspace::Workspace(const fs::path& folder) {
 std::vector<WorkspaceEntry> Workspace::list() const {
   std::vector<WorkspaceEntry> all;
   std::error_code error;
+  const std::string folder = folder_ / "";  // what every path begins with
   fs::recursive_directory_iterator at(folder_, fs::directory_options::skip_permission_denied, error);
   for (; !error && at != fs::recursive_directory_iterator() && all.size() < max_files; at.increment(error)) {
-    const bool is_hidden =
-        at->path().filename().string().starts_with('.') || schema::is_unfinished(at->path());
+    const std::string file = at->path().filename().string();
+    const bool is_hidden = file.starts_with('.') || schema::is_unfinished(at->path());
     if (at->is_symlink(error) || is_hidden || at.depth() >= max_depth) at.disable_recursion_pending();
     if (is_hidden || at->is_symlink(error) || !at->is_regular_file(error)) continue;
-    const auto kind = kind_of(at->path().filename().string());
+    const auto kind = kind_of(file);
     if (!kind) continue;
-    WorkspaceEntry entry{.name = at->path().lexically_relative(folder_).generic_string(),
+    WorkspaceEntry entry{.name = at->path().native().substr(folder.size()),
                          .kind = *kind,
                          .path = at->path(),
                          .bytes = at->file_size(error),
@@ -139,6 +141,7 @@ void Workspace::look_into_all(std::vector<WorkspaceEntry> entries) {
   if (is_looking_) return;
   is_looking_ = true;
   looker_ = std::jthread([this](const std::stop_token& stop) {
+    give_way();  // to whoever waits for the list
     while (!stop.stop_requested()) {
       std::unique_lock own(mutex_);
       if (to_look_into_.empty()) {
@@ -174,16 +177,15 @@ std::vector<WorkspaceEntry> Workspace::scan() {
   look_into_all(std::move(unknown));
   const std::lock_guard lock(mutex_);
   std::erase_if(all, [this](WorkspaceEntry& it) { return !take_what_is_known(it); });
-  found_.clear();
-  for (const WorkspaceEntry& it : all) found_.emplace(it.id, it);
+  found_ = all;
   return all;
 }
 
 WorkspaceEntry Workspace::find(const std::string& id, FileKind kind) {
   const auto named = [&]() -> std::optional<WorkspaceEntry> {
     const std::lock_guard lock(mutex_);
-    const auto found = found_.find(id);
-    return found == found_.end() ? std::nullopt : std::optional(found->second);
+    const auto found = std::ranges::find(found_, id, &WorkspaceEntry::id);
+    return found == found_.end() ? std::nullopt : std::optional(*found);
   };
   std::error_code error;
   for (const bool anew : {false, true}) {

@@ -88,7 +88,7 @@ class Workspace {
 
   std::filesystem::path folder_;
   mutable std::mutex mutex_;                     ///< of all below
-  std::map<std::string, WorkspaceEntry> found_;  ///< by id
+  std::vector<WorkspaceEntry> found_;            ///< by the last scan
   std::map<std::string, Looked> looked_;         ///< by id
   std::vector<WorkspaceEntry> to_look_into_;     ///< the next one last
   bool is_looking_ = false;                      ///< the thread is at work

@@ -1,11 +1,15 @@
 #include "workspace/workspace_routes.h"
 
+#include <algorithm>
+#include <array>
 #include <chrono>
-#include <cstddef>
+#include <iterator>
 #include <string_view>
+#include <utility>
 
-#include <fmt/chrono.h>
+#include <fmt/format.h>
 
+#include "jobs/job_record.h"
 #include "laws/law_file.h"
 #include "laws/law_toml.h"
 #include "laws/placement.h"
@@ -16,19 +20,19 @@
 namespace kerf::bench {
 namespace {
 
-std::string iso_8601(std::filesystem::file_time_type time) {
-  const auto on_the_wall = std::chrono::file_clock::to_sys(time);
-  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}",
-                     fmt::gmtime(std::chrono::system_clock::to_time_t(
-                         std::chrono::time_point_cast<std::chrono::system_clock::duration>(on_the_wall))));
+std::string modified_of(const WorkspaceEntry& entry) {
+  const auto on_the_wall = std::chrono::file_clock::to_sys(entry.modified);
+  return iso_8601(std::chrono::time_point_cast<std::chrono::system_clock::duration>(on_the_wall));
 }
 
+/// Key by key: a list of thousands is made of these.
 nlohmann::ordered_json recording_entry(const WorkspaceEntry& entry) {
-  nlohmann::ordered_json json{{"id", entry.id},
-                              {"name", entry.name},
-                              {"bytes", entry.bytes},
-                              {"modified", iso_8601(entry.modified)},
-                              {"partial", entry.name.ends_with(".partial")}};
+  nlohmann::ordered_json json;
+  json["id"] = entry.id;
+  json["name"] = entry.name;
+  json["bytes"] = entry.bytes;
+  json["modified"] = modified_of(entry);
+  json["partial"] = entry.name.ends_with(".partial");
   if (entry.seconds) json["seconds"] = *entry.seconds;
   return json;
 }
@@ -81,36 +85,52 @@ nlohmann::ordered_json session_entry(const WorkspaceEntry& entry) {
   return json;
 }
 
-nlohmann::ordered_json workspace_json(Workspace& workspace, const std::string& device) {
-  nlohmann::ordered_json json{{"folder", workspace.folder().filename().string()},
-                              {"version", software()},
-                              {"device", device},
-                              {"recordings", nlohmann::ordered_json::array()},
-                              {"laws", nlohmann::ordered_json::array()},
-                              {"sessions", nlohmann::ordered_json::array()},
-                              {"files", nlohmann::ordered_json::array()}};
-  std::size_t unlooked = 0;
-  for (const WorkspaceEntry& entry : workspace.scan()) {
-    if (!entry.is_looked_into) ++unlooked;
-    switch (entry.kind) {
-      case FileKind::recording:
-        json["recordings"].push_back(recording_entry(entry));
-        break;
-      case FileKind::law:
-        json["laws"].push_back(law_entry(entry));
-        break;
-      case FileKind::session:
-        json["sessions"].push_back(session_entry(entry));
-        break;
-      default:
-        json["files"].push_back({{"id", entry.id},
-                                 {"name", entry.name},
-                                 {"kind", name_of(entry.kind)},
-                                 {"modified", iso_8601(entry.modified)}});
-    }
+/// Told by what each file is and by what is `read` from some, so that the list itself need not be made.
+std::string state_of(const std::vector<WorkspaceEntry>& entries, const nlohmann::ordered_json& read) {
+  std::string all = read.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  for (const WorkspaceEntry& it : entries)
+    fmt::format_to(std::back_inserter(all), "\n{} {} {} {} {} {}", it.id, name_of(it.kind), it.bytes,
+                   it.modified.time_since_epoch().count(), it.is_looked_into, it.seconds.value_or(-1.0));
+  return sha256_of(std::string_view(all)).substr(0, 16);
+}
+
+nlohmann::ordered_json entries_of(const std::vector<WorkspaceEntry>& entries, FileKind kind,
+                                  nlohmann::ordered_json (&make)(const WorkspaceEntry&)) {
+  nlohmann::ordered_json found = nlohmann::ordered_json::array();
+  for (const WorkspaceEntry& it : entries) {
+    if (it.kind == kind) found.push_back(make(it));
   }
-  json["unlooked"] = unlooked;
-  json["state"] = sha256_of(std::string_view(json.dump())).substr(0, 16);
+  return found;
+}
+
+/// Recordings, laws and sessions have lists of their own.
+nlohmann::ordered_json other_files(const std::vector<WorkspaceEntry>& entries) {
+  constexpr std::array listed{FileKind::recording, FileKind::law, FileKind::session};
+  nlohmann::ordered_json files = nlohmann::ordered_json::array();
+  for (const WorkspaceEntry& it : entries) {
+    if (std::ranges::find(listed, it.kind) != listed.end()) continue;
+    files.push_back(
+        {{"id", it.id}, {"name", it.name}, {"kind", name_of(it.kind)}, {"modified", modified_of(it)}});
+  }
+  return files;
+}
+
+/// @param unless what the asker knows the state of.
+nlohmann::ordered_json workspace_json(Workspace& workspace, const std::string& device,
+                                      const std::string& unless) {
+  const std::vector<WorkspaceEntry> entries = workspace.scan();
+  nlohmann::ordered_json laws = entries_of(entries, FileKind::law, law_entry);
+  nlohmann::ordered_json sessions = entries_of(entries, FileKind::session, session_entry);
+  const std::string state = state_of(entries, {laws, sessions});
+  if (state == unless) return {{"unchanged", true}};
+  nlohmann::ordered_json json{
+      {"folder", workspace.folder().filename().string()}, {"version", software()}, {"device", device}};
+  json["recordings"] = entries_of(entries, FileKind::recording, recording_entry);
+  json["laws"] = std::move(laws);
+  json["sessions"] = std::move(sessions);
+  json["files"] = other_files(entries);
+  json["unlooked"] = std::ranges::count(entries, false, &WorkspaceEntry::is_looked_into);
+  json["state"] = state;
   return json;
 }
 
@@ -118,11 +138,9 @@ nlohmann::ordered_json workspace_json(Workspace& workspace, const std::string& d
 
 void add_workspace_routes(Routes& routes, Workspace& workspace, const std::string& device) {
   routes.get("/api/workspace", Routes::Pace::slow, [&workspace, device](const HttpRequest& request) {
-    const nlohmann::ordered_json json = workspace_json(workspace, device);
     const auto unless = request.query.find("unless");
-    if (unless != request.query.end() && unless->second == json["state"])
-      return json_response({{"unchanged", true}});
-    return json_response(json);
+    return json_response(
+        workspace_json(workspace, device, unless == request.query.end() ? "" : unless->second));
   });
 }
 

@@ -13,7 +13,7 @@ const median = (values) => [...values].sort((a, b) => a - b)[Math.floor(values.l
 
 async function compressed(studio) {
   let bytes = 0;
-  for (const path of ["/", "/studio.js", "/parallel.js", "/studio.css", "/icon.svg"]) {
+  for (const path of ["/", "/studio.js", "/studio.css", "/icon.svg"]) {
     const answer = await fetch(studio.origin + path, { headers: { "X-Kerf-Token": studio.token } });
     bytes += gzipSync(Buffer.from(await answer.arrayBuffer())).length;
   }

@@ -1,6 +1,7 @@
 // The segment editor: a law is drawn over an averaged cycle by mouse, by keys alone and by numbers, and rendered.
 
 import { existsSync, readFileSync } from "node:fs";
+import { copyFile, rm } from "node:fs/promises";
 import { join } from "node:path";
 
 import { expect, expectEqual, expectNoComplaints, openPage, until } from "./harness.mjs";
@@ -269,6 +270,38 @@ async function feelWhileDrawing(page, studio) {
   expect((await studio.api("/api/live/status")).json.released, "a law that is felt leaves it released");
 }
 
+const optionsOf = (page, name) => page.getByLabel(name).locator("option").allTextContents();
+
+/** Wherever laws are picked, one that was saved can be, and one that is gone cannot, without a reload. */
+async function pickWhatIsThere(page, studio) {
+  await openEditor(page, studio);
+  expectEqual(await optionsOf(page, "Start from law"), ["none here fits"], "laws at first");
+  await save(page, "drawn");
+  await until("it can be started from", async () =>
+    (await optionsOf(page, "Start from law")).includes("drawn.law.toml"),
+  );
+
+  await page.goto(studio.page("stability"));
+  await page.getByLabel("Map of").selectOption({ label: "drawn.law.toml" });
+  await copyFile(join(studio.folder, "drawn.law.toml"), join(studio.folder, "beside.law.toml"));
+  await until("another is offered", async () => (await optionsOf(page, "Map of")).includes("beside.law.toml"));
+  expectEqual(
+    await page.getByLabel("Map of").inputValue(),
+    await studio.id("laws", "drawn.law.toml"),
+    "what is picked",
+  );
+  await page.getByLabel("Depth of the tool [mm]").waitFor();
+  await rm(join(studio.folder, "drawn.law.toml"));
+  await until("it is gone", async () => !(await optionsOf(page, "Map of")).includes("drawn.law.toml"));
+  expectEqual(await page.getByLabel("Map of").inputValue(), "", "walls are mapped where the law is gone");
+  await page.getByLabel("Depth of the tool [mm]").waitFor({ state: "hidden" });
+
+  await page.goto(studio.page("scope"));
+  await until("the scope has it", async () => (await optionsOf(page, "Law to feel")).includes("beside.law.toml"));
+  await rm(join(studio.folder, "beside.law.toml"));
+  await until("nor has the scope", async () => (await optionsOf(page, "Law to feel")).join() === "nothing");
+}
+
 /** A studio and a page for each. */
 function alone(part, except = []) {
   return async ({ browser, studio, screenshots }) => {
@@ -286,11 +319,12 @@ const refused = [/status of 4\d\d/]; // what the browser says of an answer that 
 export const tests = {
   "a law is drawn by mouse, taken back, saved and runs": alone(drawByMouse),
   "what was drawn outlives the page and the studio": alone(keepWhatWasDrawn, [
-    /ERR_CONNECTION_REFUSED/,
+    /ERR_CONNECTION_(REFUSED|RESET)/,
     /status of 403/,
   ]),
   "a law is drawn, changed and saved by keys alone": alone(drawByKeys),
   "a law is made by numbers and optima, replaced and gone on with": alone(workOnALaw, refused),
   "a law is felt while it is drawn": alone(feelWhileDrawing),
+  "laws are picked from among those that are there": alone(pickWhatIsThere),
   "the loop is left alone": alone(leaveTheLoopAlone, refused),
 };

@@ -132,7 +132,7 @@ export const tests = {
   async "the page is less than 150 kB"({ studio }) {
     await studio.serve();
     let bytes = 0;
-    for (const path of ["/", "/studio.js", "/parallel.js", "/studio.css", "/icon.svg"]) {
+    for (const path of ["/", "/studio.js", "/studio.css", "/icon.svg"]) {
       const answer = await fetch(studio.origin + path, { headers: { "X-Kerf-Token": studio.token } });
       bytes += gzipSync(Buffer.from(await answer.arrayBuffer())).length;
     }

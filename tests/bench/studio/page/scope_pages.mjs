@@ -118,6 +118,12 @@ export const tests = {
     await studio.api("/api/live/feel", { toml: law });
     await rendered("kelvin");
     expectEqual(await list.inputValue(), await studio.id("laws", "c.law.toml"), "what is picked");
+    await writeFile(join(studio.folder, "d.law.toml"), law);
+    await until("a new law is offered", async () =>
+      (await list.locator("option").allTextContents()).includes("d.law.toml"),
+    );
+    expectEqual(await list.inputValue(), await studio.id("laws", "c.law.toml"), "what stays picked");
+    expect(await punch.evaluate((it) => it.disabled), "what does not suit still cannot be picked");
     await list.selectOption({ label: "nothing" });
     await page.getByRole("button", { name: "Render" }).click();
     await rendered("nothing");

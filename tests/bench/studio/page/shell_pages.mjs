@@ -1,7 +1,7 @@
 // What is around every page: the address that holds what is seen, tabs, the list at the left, commands and keys, and how much
 // of the window is left to the data.
 
-import { copyFile, mkdir, readFile, rm } from "node:fs/promises";
+import { copyFile, mkdir, readFile, rm, utimes } from "node:fs/promises";
 import { join } from "node:path";
 
 import { audit } from "./accessibility.mjs";
@@ -172,6 +172,10 @@ export const tests = {
     );
     await page.keyboard.press("r");
     await until("it is read anew", () => page.locator("#notice_strip").isHidden());
+    await utimes(join(studio.folder, "third.h5"), 1e9, 1e9); // as what is written after the clock was set back
+    await until("an earlier time is a change too", async () =>
+      (await page.textContent("#notice")).startsWith("third.h5 has changed in the folder"),
+    );
     await rm(join(studio.folder, "third.h5"));
     await until("one that is gone leaves the list", async () => !(await rows(page)).includes("third"));
     await until("the page says so", async () =>

@@ -142,6 +142,37 @@ export const tests = {
     expectNoComplaints(page);
   },
 
+  async PullsABrushAlongAndByItsEndsAndTakesItAway({ browser, studio }) {
+    const page = await openSweep({ browser, studio }, {}, `?where=${JSON.stringify({ delay: ["0.001"] })}`);
+    const brush = page.locator('g.brush[data-axis="delay"]');
+    await brush.scrollIntoViewIfNeeded();
+    // From a place of one part to a height of the axis, as a share of it from above.
+    const drag = async (part, y, share) => {
+      await brush.evaluate((it) => (it.dataset.before = "")); // until the lines are drawn anew
+      const box = await brush.locator(part).boundingBox();
+      const along = await brush.locator(".overlay").boundingBox();
+      await page.mouse.move(box.x + box.width / 2, box.y + y * box.height);
+      await page.mouse.down();
+      await page.mouse.move(box.x + box.width / 2, along.y + share * along.height, { steps: 4 });
+      await page.mouse.up();
+    };
+    const left = async (cells, ...values) => {
+      await until(`delays are ${values}`, () => JSON.stringify(where(page).delay ?? []) === JSON.stringify(values));
+      await until("the counts follow", async () => (await counted(page)).startsWith(`${cells} cells count`));
+      await page.waitForSelector('g.brush[data-axis="delay"]:not([data-before])');
+    };
+    await left(60, "0.001");
+    await drag(".selection", 0.5, 0); // beyond the upper end, where it stops
+    await left(60, "0.004");
+    await drag(".handle >> nth=1", 0.5, 0.55);
+    await left(120, "0.001", "0.004");
+    await drag(".handle >> nth=0", 0.5, 1); // past the other end
+    await left(60, "0");
+    await drag(".overlay", 0.2, 0.2);
+    await left(180);
+    expectNoComplaints(page);
+  },
+
   async DrawsTheShareOfCellsWithACondition({ browser, studio }) {
     const page = await openSweep({ browser, studio });
     const share = page.getByLabel("or the share of cells with");

@@ -84,7 +84,6 @@ const std::vector<std::string> gets{"/",
                                     "/api/studies",
                                     "/api/study?id=0",
                                     "/api/study/report?id=0",
-                                    "/parallel.js",
                                     "/api/sweep?id=0",
                                     "/api/session",
                                     "/nothing"};

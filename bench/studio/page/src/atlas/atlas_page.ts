@@ -37,14 +37,10 @@ export class AtlasPage {
   ) {
     this.answers = new Latest(context.signal);
     this.samples = new Latest(context.signal);
-    this.parallel = new ParallelPlot(
-      context.api.token,
-      (column, filter) => {
-        const choice = choiceIn(context.state, sweep);
-        if (choice) this.choose(filtered(choice, column, filter));
-      },
-      context.complain,
-    );
+    this.parallel = new ParallelPlot((column, filter) => {
+      const choice = choiceIn(context.state, sweep);
+      if (choice) this.choose(filtered(choice, column, filter));
+    });
     this.root = element(
       "div",
       { class: "stack" },

@@ -1,5 +1,4 @@
 import type { FitOfCycles } from "../api/cycles";
-import type { Workspace } from "../api/workspace";
 import { resultName } from "../results/names";
 import { resultsOf } from "../results/of_recording/files";
 import { element } from "../ui/dom";
@@ -32,10 +31,10 @@ export class EarlierFits {
 
   private async look(): Promise<void> {
     const { recording } = this;
-    const { api } = this.context;
+    const { api, folder } = this.context;
     const found = await this.latest
       .ask(async (signal) => {
-        const workspace = await api.get<Workspace>("/api/workspace", {}, signal);
+        const workspace = await folder();
         const fits = resultsOf(workspace, recording.name, ["fit"]);
         return Promise.all(
           fits.map(async (fit) => {

@@ -1,5 +1,6 @@
+import { bytes } from "../recordings/recording_list";
 import { button, element } from "../ui/dom";
-import { size, type FileState, type TakenFile } from "./taken_file";
+import type { FileState, TakenFile } from "./taken_file";
 
 const words: Record<FileState, string> = {
   sending: "is coming",
@@ -50,7 +51,7 @@ class FileLine {
       "li",
       {},
       this.press,
-      element("span", { class: "quiet file_size" }, size(file.bytes)),
+      element("span", { class: "quiet file_size" }, bytes(file.bytes)),
       this.words,
       this.bar,
       this.naming,

@@ -1,5 +1,5 @@
 import type { Mapping, Preview } from "../api/intake";
-import { button, element, labelled } from "../ui/dom";
+import { button, element, labelled, setOptions } from "../ui/dom";
 import { Latest } from "../ui/latest";
 import type { Context } from "../ui/view";
 import { OptionsForm } from "./options_form";
@@ -78,12 +78,10 @@ export class MappingPanel {
   }
 
   offer(mappings: readonly { id: string; name: string }[]): void {
-    const chosen = this.saved.value;
-    this.saved.replaceChildren(
-      element("option", { value: "" }, mappings.length > 0 ? "– as below –" : "– none –"),
-      ...mappings.map((it) => element("option", { value: it.id }, it.name.replace(/\.import\.toml$/, ""))),
-    );
-    this.saved.value = mappings.some((it) => it.id === chosen) ? chosen : "";
+    setOptions(this.saved, [
+      { value: "", text: mappings.length > 0 ? "– as below –" : "– none –" },
+      ...mappings.map((it) => ({ value: it.id, text: it.name.replace(/\.import\.toml$/, "") })),
+    ]);
   }
 
   /** Tries the mapping on a file; one that nobody has touched gives way to what the file suggests. */

@@ -1,5 +1,5 @@
 import type { LineKind, Preview, PreviewColumn, PreviewLine } from "../api/intake";
-import { element, select } from "../ui/dom";
+import { element, select, setOptions } from "../ui/dom";
 import { choicesOf, isPlain, mapOf, ownChannel, usualChannels, type Choice } from "./mapping";
 import { UnitField } from "./unit_field";
 
@@ -139,7 +139,9 @@ function offer(node: HTMLSelectElement, chosen: string): void {
   const usual = ["", ...usualChannels, "own"];
   const values = usual.includes(chosen) ? usual : [...usual, chosen];
   const texts: Record<string, string> = { "": "– left out –", own: "a channel of its own" };
-  if (node.options.length !== values.length || !values.every((it, k) => node.options[k]?.value === it))
-    node.replaceChildren(...values.map((it) => element("option", { value: it }, texts[it] ?? it)));
-  node.value = chosen;
+  setOptions(
+    node,
+    values.map((it) => ({ value: it, text: texts[it] ?? it })),
+    chosen,
+  );
 }

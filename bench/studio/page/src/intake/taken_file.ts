@@ -34,12 +34,3 @@ export function takenFile(name: string, bytes: number, file: File | null): Taken
     sending: new AbortController(),
   };
 }
-
-/** "3.2 MB" */
-export function size(bytes: number): string {
-  if (bytes < 1000) return `${bytes} B`;
-  const steps = ["kB", "MB", "GB", "TB"] as const;
-  const power = Math.min(steps.length, Math.floor(Math.log10(bytes) / 3));
-  const value = bytes / 1000 ** power;
-  return `${value.toLocaleString("en-GB", { maximumSignificantDigits: 3, useGrouping: false })} ${steps[power - 1]}`;
-}

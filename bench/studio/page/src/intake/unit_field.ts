@@ -1,5 +1,5 @@
 import type { PreviewColumn } from "../api/intake";
-import { element } from "../ui/dom";
+import { element, setOptions } from "../ui/dom";
 
 const another = "another";
 
@@ -8,7 +8,6 @@ export class UnitField {
   readonly root: HTMLElement;
   private readonly list: HTMLSelectElement;
   private readonly text: HTMLInputElement;
-  private offered = "";
 
   constructor(
     private readonly column: PreviewColumn,
@@ -43,16 +42,15 @@ export class UnitField {
     this.list.disabled = this.text.disabled = disabled;
     if (document.activeElement === this.text) return;
     const values = ["", ...units, ...(unit === "" || units.includes(unit) ? [] : [unit]), another];
-    const offered = values.join("\n");
-    if (offered !== this.offered) {
-      this.offered = offered;
-      const words: Record<string, string> = {
-        "": this.column.unit ? `${this.column.unit}, as the file says` : "– unit –",
-        [another]: "another …",
-      };
-      this.list.replaceChildren(...values.map((it) => element("option", { value: it }, words[it] ?? it)));
-    }
-    this.list.value = unit;
+    const words: Record<string, string> = {
+      "": this.column.unit ? `${this.column.unit}, as the file says` : "– unit –",
+      [another]: "another …",
+    };
+    setOptions(
+      this.list,
+      values.map((it) => ({ value: it, text: words[it] ?? it })),
+      unit,
+    );
     this.text.hidden = true;
     this.text.value = unit;
   }

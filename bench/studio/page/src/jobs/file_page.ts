@@ -1,5 +1,4 @@
 import type { Trashed } from "../api/jobs";
-import type { Workspace } from "../api/workspace";
 import { bytes, date } from "../recordings/recording_list";
 import { button, element, labelled } from "../ui/dom";
 import type { Context } from "../ui/view";
@@ -44,9 +43,9 @@ export class FilePage {
   }
 
   private async load(): Promise<void> {
-    const { api, signal, complain } = this.context;
+    const { api, folder, signal, complain } = this.context;
     try {
-      const workspace = await api.get<Workspace>("/api/workspace", {}, signal);
+      const workspace = await folder();
       const trash = await api.get<Trashed[]>("/api/trash", {}, signal);
       const files: ChangeableFile[] = [
         ...workspace.recordings

@@ -1,5 +1,5 @@
 import type { Job } from "../api/jobs";
-import { length } from "../recordings/recording_list";
+import { date, length } from "../recordings/recording_list";
 
 // What a job is said to be, wherever it is shown.
 
@@ -32,11 +32,7 @@ export function whenInWords(job: Job): string {
     job.clock_set_s !== 0
       ? `; the machine's clock was set ${job.clock_set_s > 0 ? "forward" : "back"} by ${length(Math.abs(job.clock_set_s))} meanwhile`
       : "";
-  const at = new Date(job.created);
-  const date = Number.isNaN(at.getTime())
-    ? job.created
-    : at.toLocaleString("en-GB", { dateStyle: "medium", timeStyle: "short" });
-  return `${date}${took}${set}`;
+  return `${date(job.created)}${took}${set}`;
 }
 
 const views: Partial<Record<Job["kind"], string>> = {

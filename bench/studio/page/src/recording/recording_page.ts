@@ -1,5 +1,5 @@
 import type { Recording, RecordingInspection } from "../api/recordings";
-import type { Workspace, WorkspaceRecording } from "../api/workspace";
+import type { Workspace } from "../api/workspace";
 import { element } from "../ui/dom";
 import type { Context, OpenRecording, PageContext } from "../ui/view";
 import { factsInShort } from "./facts";
@@ -59,7 +59,7 @@ export class RecordingPage {
     this.strip.mark(this.tab);
     try {
       const [workspace, about] = await Promise.all([
-        api.get<Workspace>("/api/workspace", {}, signal),
+        this.context.folder(),
         api.get<Recording>("/api/recording", { id }, signal),
       ]);
       const name = workspace.recordings.find((it) => it.id === id)?.name ?? id;
@@ -108,7 +108,7 @@ export class RecordingPage {
     const { id } = recording;
     try {
       const [workspace, about] = await Promise.all([
-        context.api.get<Workspace>("/api/workspace", {}, context.signal),
+        context.folder(),
         context.api.get<Recording>("/api/recording", { id }, context.signal),
       ]);
       Object.assign(recording, { about, workspace, inspection: this.inspectOnce(id) });
@@ -125,7 +125,7 @@ export class RecordingPage {
     const now = workspace.recordings.find((it) => it.id === id);
     const said = !now
       ? `${name} is not in the folder any more: what is shown was read before.`
-      : !now.partial && then && isNewer(now, then)
+      : !now.partial && then && (now.modified !== then.modified || now.bytes !== then.bytes)
         ? `${name} has changed in the folder: press R to read it anew.`
         : "";
     if (said && said !== this.said) this.context.say(said);
@@ -174,6 +174,11 @@ function forTab(page: PageContext): { context: Context; end: () => void } {
     },
     signal: gone.signal,
     state: { ...page.state, onChange: (listener) => page.state.onChange(() => gone.signal.aborted || listener()) },
+    folder: async () => {
+      const workspace = await page.folder();
+      gone.signal.throwIfAborted();
+      return workspace;
+    },
     onFolder: (listener) => page.onFolder((it) => gone.signal.aborted || listener(it)),
     offer: (...commands) => {
       const take = page.offer(...commands);
@@ -188,9 +193,4 @@ function forTab(page: PageContext): { context: Context; end: () => void } {
       for (const it of ends) it();
     },
   };
-}
-
-/** Times are told in whole seconds. */
-function isNewer(now: WorkspaceRecording, then: WorkspaceRecording): boolean {
-  return now.modified > then.modified || (now.modified === then.modified && now.bytes !== then.bytes);
 }

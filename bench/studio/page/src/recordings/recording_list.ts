@@ -98,10 +98,11 @@ export function bytes(count: number): string {
   return `${plain(count / 1e9)} GB`;
 }
 
+const clock = new Intl.DateTimeFormat("en-GB", { dateStyle: "medium", timeStyle: "short" });
+
 export function date(iso: string): string {
   const at = new Date(iso);
-  if (Number.isNaN(at.getTime())) return iso;
-  return at.toLocaleString("en-GB", { dateStyle: "medium", timeStyle: "short" });
+  return Number.isNaN(at.getTime()) ? iso : clock.format(at);
 }
 
 /** What somebody sees who has none. */

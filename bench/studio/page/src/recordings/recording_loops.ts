@@ -1,7 +1,7 @@
 import "./loops.css";
 
 import type { Loops, Recording } from "../api/recordings";
-import { button, element, labelled, select } from "../ui/dom";
+import { button, element, labelled, select, setOptions } from "../ui/dom";
 import { figureOf, type Figure } from "../ui/figure_description";
 import { limitsOf } from "../ui/plot/frame";
 import { Plot } from "../ui/plot/plot";
@@ -69,7 +69,10 @@ export class RecordingLoops {
     const own = drawn[0]?.recording;
     if (!own) return;
     if (own !== before) {
-      this.axis.replaceChildren(...own.axes.map((it, k) => element("option", { value: String(k) }, it.name)));
+      setOptions(
+        this.axis,
+        own.axes.map((it, k) => ({ value: String(k), text: it.name })),
+      );
       this.take(own);
     }
     void this.load();

@@ -1,5 +1,5 @@
 import type { LawView } from "../api/results";
-import { element, labelled, select } from "../ui/dom";
+import { element, labelled, select, setOptions } from "../ui/dom";
 import { download, fileName } from "../ui/plot/out/download";
 import { menu } from "../ui/plot/out/export_menu";
 import type { Context } from "../ui/view";
@@ -34,13 +34,14 @@ export function lawMenu({ api, complain }: Context, law: { id: string; name: str
   root.querySelector("summary")?.setAttribute("aria-label", `Save law: ${title}`);
   root.addEventListener("toggle", () => {
     if (host.options.length > 0) return;
-    api
-      .get<Host[]>("/api/laws/hosts")
-      .then(
-        (all) =>
-          host.replaceChildren(...all.map((it) => element("option", { value: it.name }, `${it.name}: ${it.what}`))),
-        complain,
-      );
+    api.get<Host[]>("/api/laws/hosts").then(
+      (all) =>
+        setOptions(
+          host,
+          all.map((it) => ({ value: it.name, text: `${it.name}: ${it.what}` })),
+        ),
+      complain,
+    );
   });
   return root;
 }

@@ -1,6 +1,6 @@
 import type { LoopStatus } from "../api/loop";
 import type { Workspace } from "../api/workspace";
-import { button, element, labelled, select } from "../ui/dom";
+import { button, element, labelled, select, setOptions } from "../ui/dom";
 import type { Context } from "../ui/view";
 import { lackingFor, lawsToPick, shortName } from "../laws";
 
@@ -11,7 +11,6 @@ export class ScopeControls {
   private laws: Workspace["laws"] = [];
   private saved = ""; // the recording that has just ended
   private folder: Workspace | null = null;
-  private suited = ""; // the axes that the list is for
   private readonly device = element("input", { type: "text", autocomplete: "off", spellcheck: "false" });
   private readonly sensor = element("input", {
     type: "text",
@@ -24,7 +23,7 @@ export class ScopeControls {
   // Going through the list renders nothing: a law comes to the hand by a press alone.
   private readonly render = button("Render", () => this.feel(), { disabled: true });
   private readonly rendered = element("p", { class: "rendered" });
-  private readonly start = element("button", { type: "submit", class: "firm", disabled: true }, "Start"); // until fill()
+  private readonly start = element("button", { type: "submit", class: "firm", disabled: true }, "Start"); // until the folder is known
   private readonly name = element("input", {
     type: "text",
     autocomplete: "off",
@@ -38,7 +37,13 @@ export class ScopeControls {
 
   constructor(private readonly context: Context) {
     context.onFolder((workspace) => {
+      if (!this.folder && this.device.value === "") this.device.value = workspace.device;
       this.folder = workspace;
+      this.laws = lawsToPick(workspace);
+      const scenes = workspace.files.filter((it) => it.kind === "scene").map((it) => ({ value: it.id, text: it.name }));
+      setOptions(this.scene, [{ value: "", text: "none" }, ...scenes]);
+      this.start.disabled = false;
+      this.offerWhatSuits();
       if (this.saved !== "") this.showSaved();
     });
     this.root = element(
@@ -64,29 +69,10 @@ export class ScopeControls {
     );
   }
 
-  fill(workspace: Workspace): void {
-    if (this.device.value === "") this.device.value = workspace.device;
-    this.start.disabled = false;
-    this.laws = lawsToPick(workspace);
-    const options = (first: string, items: readonly { id: string; name: string }[]): HTMLOptionElement[] => [
-      element("option", { value: "" }, first),
-      ...items.map((it) => element("option", { value: it.id }, it.name)),
-    ];
-    this.scene.replaceChildren(
-      ...options(
-        "none",
-        workspace.files.filter((it) => it.kind === "scene"),
-      ),
-    );
-    this.law.replaceChildren(...options("nothing", this.laws));
-    this.suited = "";
-    if (this.status) this.show(this.status);
-  }
-
   show(status: LoopStatus): void {
     const before = this.status;
     this.status = status;
-    this.offerWhatSuits(status);
+    this.offerWhatSuits();
     const running = status.running || status.starting === true;
     this.start.textContent = running ? "Stop" : "Start";
     this.start.classList.toggle("firm", !running);
@@ -113,17 +99,13 @@ export class ScopeControls {
   }
 
   /** What the device has no axis for stands in the list with the reason, and cannot be picked. */
-  private offerWhatSuits({ running, axes }: LoopStatus): void {
-    const suited = running ? JSON.stringify(axes) : "all";
-    if (suited === this.suited) return;
-    this.suited = suited;
-    for (const [index, law] of this.laws.entries()) {
-      const lacking = running ? lackingFor(law, axes) : "";
-      const option = this.law.options[index + 1]!;
-      option.disabled = lacking !== "";
-      option.textContent = lacking ? `${law.name} (for ${lacking})` : law.name;
-      if (option.disabled && option.selected) this.law.value = "";
-    }
+  private offerWhatSuits(): void {
+    const axes = this.status?.running ? this.status.axes : null;
+    const laws = this.laws.map((law) => {
+      const lacking = axes ? lackingFor(law, axes) : "";
+      return { value: law.id, text: lacking ? `${law.name} (for ${lacking})` : law.name, disabled: lacking !== "" };
+    });
+    setOptions(this.law, [{ value: "", text: "nothing" }, ...laws]);
   }
 
   /** Where the recording is, as a way to its page once it is in the folder's list. */

@@ -1,6 +1,6 @@
 import type { Trace } from "../api/recordings";
 import { inWords } from "../recordings/trace_groups";
-import { element, labelled, select } from "../ui/dom";
+import { element, labelled, select, setOptions } from "../ui/dom";
 import { unitFor } from "../ui/numbers";
 import type { TriggerEdge, TriggerMode, TriggerSettings } from "./trigger";
 
@@ -63,8 +63,10 @@ export class TriggerPanel {
     const wanted = this.trace.value || this.given.trace;
     const usual = traces.find((it) => it.group === "force")?.name ?? "";
     const chosen = traces.some((it) => it.name === wanted) ? wanted : usual;
-    this.trace.replaceChildren(
-      ...traces.map((it) => element("option", { value: it.name, selected: it.name === chosen }, inWords(it.name))),
+    setOptions(
+      this.trace,
+      traces.map((it) => ({ value: it.name, text: inWords(it.name) })),
+      chosen,
     );
     this.told(false);
   }

@@ -110,7 +110,7 @@ export class Shell {
       return;
     }
     this.end();
-    void this.store.look(); // what the page before has written
+    this.store.look(); // what the page before has written
     this.shown = { view, id: address.id };
     this.notice.say("");
     for (const [name, link] of this.links) {
@@ -152,7 +152,8 @@ export class Shell {
       },
       onTab: (listener) => this.tabListeners.push(listener),
       onFolder: (listener) => ends.push(this.store.onChange(listener)),
-      lookAtFolder: () => void this.store.look(),
+      folder: () => this.store.now(gone.signal),
+      lookAtFolder: () => this.store.look(),
     };
     const unmount = view.mount(this.root, context);
     this.end = () => {

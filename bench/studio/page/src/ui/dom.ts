@@ -42,17 +42,31 @@ export function button(text: string, press: () => void, attributes: Attributes =
   return element("button", { type: "button", click: press, ...attributes }, text);
 }
 
-export function select(
-  options: readonly { value: string; text: string }[],
-  chosen: string,
-  change: (value: string) => void,
-): HTMLSelectElement {
-  const node = element(
-    "select",
-    { change: () => change(node.value) },
-    ...options.map((it) => element("option", { value: it.value, selected: it.value === chosen }, it.text)),
-  );
+export interface Option {
+  readonly value: string;
+  readonly text: string;
+  readonly disabled?: boolean;
+}
+
+export function select(options: readonly Option[], chosen: string, change: (value: string) => void): HTMLSelectElement {
+  const node = element("select", { change: () => change(node.value) });
+  setOptions(node, options, chosen);
   return node;
+}
+
+/** What is chosen stays so unless told otherwise; where it is not to be had any more, the first one is. */
+export function setOptions(node: HTMLSelectElement, options: readonly Option[], chosen = node.value): void {
+  const isThere = ({ value, text, disabled = false }: Option, k: number): boolean => {
+    const own = node.options[k];
+    return own?.value === value && own.textContent === text && own.disabled === disabled;
+  };
+  // Those that are there stay: the list may be open.
+  if (node.options.length !== options.length || !options.every(isThere))
+    node.replaceChildren(
+      ...options.map(({ value, text, disabled = false }) => element("option", { value, disabled }, text)),
+    );
+  const wanted = options.find((it) => it.value === chosen && !it.disabled) ?? options[0];
+  node.value = wanted?.value ?? "";
 }
 
 /** What a column is called, and in a file, where it has its unit. */

@@ -26,7 +26,7 @@ export function plain(value: number | null | undefined, digits = 3): string {
   if (value === 0) return "0";
   const size = Math.abs(value);
   if (size >= 1e6 || size < 1e-4) return value.toExponential(digits - 1).replace("-", "−");
-  return value.toLocaleString("en-GB", { maximumSignificantDigits: digits, useGrouping: false }).replace("-", "−");
+  return String(Number(value.toPrecision(digits))).replace("-", "−");
 }
 
 /** Degrees, as the charts of `kerf report` have them, in place of radians. */

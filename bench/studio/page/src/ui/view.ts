@@ -40,6 +40,8 @@ export interface Context {
   focusHead: () => void;
   /** What is in the folder: told now, if it is known, and whenever it has changed; ends with the page or tab. */
   onFolder: (listener: (workspace: Workspace) => void) => void;
+  /** What is in the folder now; aborted with the page or tab. */
+  folder: () => Promise<Workspace>;
   /** Somebody has written a file: the list need not wait until it looks again. */
   lookAtFolder: () => void;
   /** Offers commands in the palette and by their keys, until the page or tab goes or what it gives back is called. */

@@ -1,23 +1,11 @@
 import "./results.css";
 
 import type { DeviceFile } from "../api/results";
-import type { Workspace, WorkspaceFile } from "../api/workspace";
 import { DevicePage } from "../devices/device_page";
 import { byName, resultName } from "../results/names";
+import { resultList } from "../results/result_list";
 import { element } from "../ui/dom";
 import type { View } from "../ui/view";
-
-function listOf(files: readonly WorkspaceFile[]): HTMLElement {
-  const links = files.map((it) => element("li", {}, element("a", { href: `#/devices/${it.id}` }, resultName(it))));
-  return element(
-    "section",
-    { class: "card", "aria-label": "Devices in this folder" },
-    element("h2", {}, "Devices in this folder"),
-    links.length > 0
-      ? element("ul", { class: "links" }, ...links)
-      : element("p", { class: "quiet" }, "There is none yet: kerf identify URI -o FOLDER measures one."),
-  );
-}
 
 export const devices: View = {
   name: "devices",
@@ -29,7 +17,7 @@ export const devices: View = {
     let page: DevicePage | null = null;
     const show = async (): Promise<void> => {
       const { id } = context.place;
-      const workspace = await context.api.get<Workspace>("/api/workspace", {}, gone.signal);
+      const workspace = await context.folder();
       const files = workspace.files.filter((it) => it.kind === "device").sort(byName);
       const file = files.find((it) => it.id === id);
       const of = file ? await context.api.get<DeviceFile>("/api/result", { id }, gone.signal) : null;
@@ -41,7 +29,14 @@ export const devices: View = {
         return;
       }
       if (id) context.say("That device is not in this folder any more.");
-      root.append(listOf(files));
+      root.append(
+        resultList(
+          "Devices in this folder",
+          "devices",
+          files,
+          "There is none yet: kerf identify URI -o FOLDER measures one.",
+        ),
+      );
     };
     show().catch(context.complain);
     return () => {

@@ -131,7 +131,7 @@ function edit(
         { class: "side card" },
         figures.table,
         optima(context, drawing, axis, settled),
-        startFrom(context, drawing, workspace, settled),
+        startFrom(context, drawing, settled),
         feel.root,
         savePanel(context, drawing, axis, stemOf(name)),
       ),

@@ -1,7 +1,8 @@
 import "./results.css";
 
-import type { Workspace, WorkspaceFile } from "../api/workspace";
+import type { WorkspaceFile } from "../api/workspace";
 import { byName, resultName } from "../results/names";
+import { resultList } from "../results/result_list";
 import { leadToTab } from "../results/of_recording/old_address";
 import { openResult, type OpenedResult } from "../results/opened_result";
 import { element } from "../ui/dom";
@@ -9,18 +10,6 @@ import type { View } from "../ui/view";
 
 // Addresses of earlier versions: with the id of a recording, or of a result of one, they lead to its tab. A result
 // whose recording is not in the folder is shown by itself.
-
-function listOf(name: string, title: string, files: readonly WorkspaceFile[]): HTMLElement {
-  const links = files.map((it) => element("li", {}, element("a", { href: `#/${name}/${it.id}` }, resultName(it))));
-  return element(
-    "section",
-    { class: "card", "aria-label": title },
-    element("h2", {}, title),
-    links.length > 0
-      ? element("ul", { class: "links" }, ...links)
-      : element("p", { class: "quiet" }, "There is none yet: open a recording, and order one in its tab."),
-  );
-}
 
 function viewOf(name: "fits" | "chart", title: string, kinds: readonly WorkspaceFile["kind"][]): View {
   return {
@@ -31,15 +20,22 @@ function viewOf(name: "fits" | "chart", title: string, kinds: readonly Workspace
       root.append(head);
       let opened: OpenedResult | null = null;
       const show = async (): Promise<void> => {
-        const { api, place, signal } = context;
+        const { place, signal } = context;
         const { id } = place;
-        const workspace = await api.get<Workspace>("/api/workspace", {}, signal);
+        const workspace = await context.folder();
         const files = workspace.files.filter((it) => kinds.includes(it.kind)).sort(byName);
         if (id && leadToTab(context, workspace, name, files)) return;
         const file = files.find((it) => it.id === id);
         if (!file) {
           if (id) context.say("That result is not in this folder any more.");
-          root.append(listOf(name, `${title} in this folder`, files));
+          root.append(
+            resultList(
+              `${title} in this folder`,
+              name,
+              files,
+              "There is none yet: open a recording, and order one in its tab.",
+            ),
+          );
           return;
         }
         const open = await openResult(context, workspace, file, needsARecording, signal);

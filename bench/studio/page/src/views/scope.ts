@@ -2,8 +2,7 @@ import "./scope.css";
 
 import type { LoopStatus } from "../api/loop";
 import type { Trace } from "../api/recordings";
-import type { Workspace } from "../api/workspace";
-import { button, element, labelled, select } from "../ui/dom";
+import { button, element, labelled, select, setOptions } from "../ui/dom";
 import { singleKeysOn } from "../ui/single_keys";
 import { isTyping } from "../ui/keys";
 import type { Context, View } from "../ui/view";
@@ -83,7 +82,6 @@ class Scope {
     this.build(parent);
     addEventListener("keydown", this.key);
     this.stream.open(1);
-    api.get<Workspace>("/api/workspace").then((it) => this.controls.fill(it), complain);
   }
 
   end(): void {
@@ -154,12 +152,13 @@ class Scope {
       const axes = this.status?.axes ?? [];
       const known = this.axis.options.length > 1;
       const chosen = known ? this.axis.value : axes.length > 1 ? axes[0]?.name : "";
-      this.axis.replaceChildren(
-        element("option", { value: "" }, "all axes"),
-        ...axes.map((it) => element("option", { value: it.name, selected: it.name === chosen }, it.name)),
-        this.traces.some((it) => it.group === "channel")
-          ? element("option", { value: channels, selected: channels === chosen }, "channels")
-          : "",
+      const ofChannels = this.traces.some((it) => it.group === "channel")
+        ? [{ value: channels, text: "channels" }]
+        : [];
+      setOptions(
+        this.axis,
+        [{ value: "", text: "all axes" }, ...axes.map(({ name }) => ({ value: name, text: name })), ...ofChannels],
+        chosen,
       );
       if (another) {
         this.events.clear();

@@ -220,7 +220,7 @@ function mount(root: HTMLElement, context: Context): () => void {
   };
 
   const refresh = async (): Promise<void> => {
-    const workspace = await context.api.get<Workspace>("/api/workspace");
+    const workspace = await context.folder();
     device = workspace.device;
     known = workspace.sessions;
     ways.replaceChildren(waysOf(workspace, hasKeyFile));

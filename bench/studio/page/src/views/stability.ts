@@ -1,26 +1,14 @@
 import "./results.css";
 
 import type { StabilityFile } from "../api/results";
-import type { Workspace, WorkspaceFile } from "../api/workspace";
 import { JobList } from "../results/jobs";
 import { byName, resultName } from "../results/names";
+import { resultList } from "../results/result_list";
 import { stabilityForm } from "../results/stability/stability_form";
 import { StabilityMap } from "../results/stability/stability_map";
 import { element } from "../ui/dom";
 import { withUnit } from "../ui/numbers";
 import type { View } from "../ui/view";
-
-function listOf(files: readonly WorkspaceFile[]): HTMLElement {
-  const links = files.map((it) => element("li", {}, element("a", { href: `#/stability/${it.id}` }, resultName(it))));
-  return element(
-    "section",
-    { class: "card", "aria-label": "Maps in this folder" },
-    element("h2", {}, "Maps in this folder"),
-    links.length > 0
-      ? element("ul", { class: "links" }, ...links)
-      : element("p", { class: "quiet" }, "There is none yet."),
-  );
-}
 
 /** What was mapped, in a line. */
 function about(file: StabilityFile): string {
@@ -50,7 +38,7 @@ export const stability: View = {
     let ended = false;
     const show = async (): Promise<void> => {
       const { id } = context.place;
-      const workspace = await context.api.get<Workspace>("/api/workspace");
+      const workspace = await context.folder();
       const files = workspace.files.filter((it) => it.kind === "stability").sort(byName);
       const file = files.find((it) => it.id === id);
       const of = file ? await context.api.get<StabilityFile>("/api/result", { id }) : null;
@@ -72,7 +60,12 @@ export const stability: View = {
           "div",
           { class: "two" },
           stabilityForm(context, workspace, id, jobs),
-          element("div", { class: "stack" }, jobs.root, listOf(files)),
+          element(
+            "div",
+            { class: "stack" },
+            jobs.root,
+            resultList("Maps in this folder", "stability", files, "There is none yet."),
+          ),
         ),
       );
     };

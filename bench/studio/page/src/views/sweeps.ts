@@ -37,7 +37,7 @@ export const sweeps: View = {
     let page: AtlasPage | null = null;
     const show = async (): Promise<void> => {
       const { id } = context.place;
-      const workspace = await context.api.get<Workspace>("/api/workspace", {}, context.signal);
+      const workspace = await context.folder();
       const file = workspace.files.find((it) => it.id === id && it.kind === "sweep");
       if (!file) {
         if (id) context.say("That sweep is not in this folder any more.");

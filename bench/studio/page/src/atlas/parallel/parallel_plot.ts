@@ -3,7 +3,7 @@ import { drawn, element } from "../../ui/dom";
 import { onColours, palette } from "../../ui/palette";
 import { colourOf, rangeOfLines, stepsOf } from "../colours";
 import { withUnitOf } from "../question";
-import { loadBrushes } from "./brush_axis";
+import { brush } from "./brush";
 import { Scale } from "./scale";
 
 const margin = { top: 48, bottom: 34, left: 34, right: 76 };
@@ -22,11 +22,7 @@ export class ParallelPlot {
   private readonly observer = new ResizeObserver(() => this.draw());
   private readonly endColours = onColours(() => this.draw());
 
-  constructor(
-    private readonly token: string,
-    private readonly brushed: (column: string, filter: SweepFilter | null) => void,
-    private readonly complain: (error: unknown) => void,
-  ) {
+  constructor(private readonly brushed: (column: string, filter: SweepFilter | null) => void) {
     this.root = element(
       "figure",
       { class: "parallel" },
@@ -78,7 +74,6 @@ export class ParallelPlot {
     if (this.behind !== sample && this.behind) this.drawLines(pen, this.behind, width, true);
     this.drawLines(pen, sample, width, false);
     this.svg.replaceChildren(...this.scales.map((scale, i) => this.axis(scale, this.x(i, width))));
-    this.brush().catch(this.complain);
   }
 
   private x(axis: number, width: number): number {
@@ -126,28 +121,22 @@ export class ParallelPlot {
       drawn("text", { class: "name", x: x + shift, y: place % 2 === 0 ? 34 : 16, "text-anchor": anchor }, name),
       ...ticks,
       drawn("text", { class: "tick", x: x + 8, y: this.y(null) + 4 }, "?"),
-      drawn("g", { class: "brush", transform: `translate(${x} ${margin.top})`, "data-axis": scale.column.name }),
+      drawn(
+        "g",
+        { class: "brush", transform: `translate(${x} ${margin.top})`, "data-axis": scale.column.name },
+        ...this.brush(scale),
+      ),
     );
   }
 
-  private async brush(): Promise<void> {
-    const brushes = await loadBrushes(this.token);
+  /** Filters the cells by a stretch of the axis. */
+  private brush(scale: Scale): readonly SVGRectElement[] {
     const along = height - margin.top - margin.bottom;
-    const groups = this.svg.querySelectorAll<SVGGElement>("g.brush");
-    this.scales.forEach((scale, i) => {
-      const group = groups[i];
-      if (!group || group.hasChildNodes()) return;
-      const move = brushes({
-        group,
-        height: along,
-        moved: (range) => {
-          const filter = range ? scale.filter(1 - range[1] / along, 1 - range[0] / along) : null;
-          this.brushed(scale.column.name, filter);
-        },
-      });
-      const filter = this.where[scale.column.name];
-      const stretch = filter ? scale.stretch(filter) : null;
-      if (stretch) move([(1 - stretch[1]) * along, (1 - stretch[0]) * along]);
-    });
+    const { name } = scale.column;
+    const filter = this.where[name];
+    const stretch = filter ? scale.stretch(filter) : null;
+    return brush(along, stretch && [(1 - stretch[1]) * along, (1 - stretch[0]) * along], (to) =>
+      this.brushed(name, to && scale.filter(1 - to[1] / along, 1 - to[0] / along)),
+    );
   }
 }

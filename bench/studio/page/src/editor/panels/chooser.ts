@@ -1,10 +1,9 @@
-import type { Workspace } from "../../api/workspace";
 import { element } from "../../ui/dom";
 import type { Context } from "../../ui/view";
 
 /** The recordings of the workspace, to choose one to draw over. */
 export async function chooser(root: HTMLElement, context: Context): Promise<void> {
-  const workspace = await context.api.get<Workspace>("/api/workspace");
+  const workspace = await context.folder();
   const items = workspace.recordings
     .filter((it) => !it.partial)
     .map((it) => element("li", {}, element("a", { href: `#/recording/${it.id}/law` }, it.name)));

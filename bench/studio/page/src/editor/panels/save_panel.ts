@@ -25,6 +25,7 @@ export function savePanel(context: Context, drawing: Drawing, axis: number, name
     said.replaceChildren();
     try {
       const answer = await context.api.post<{ id: string; name: string; error: LawError }>("/api/editor/save", law);
+      context.lookAtFolder();
       said.append(
         element("span", {}, `Saved as ${answer.name}. To try it: `),
         element("code", {}, `kerf check ${answer.name}`),

@@ -1,6 +1,6 @@
 import type { Knots } from "../../api/editor";
-import type { Workspace } from "../../api/workspace";
-import { element, labelled } from "../../ui/dom";
+import type { WorkspaceLaw } from "../../api/workspace";
+import { labelled, select, setOptions } from "../../ui/dom";
 import type { Context } from "../../ui/view";
 import type { Drawing } from "../drawing";
 import { shifted } from "../knots";
@@ -12,12 +12,10 @@ interface LawKnots extends Knots {
   closing_direction: number;
 }
 
-/** A choice among the piecewise laws of the workspace that fit the axis; takes over the breakpoints of one. */
-export function startFrom(context: Context, drawing: Drawing, workspace: Workspace, taken: () => void): HTMLElement {
+/** A choice among the piecewise laws of the folder that fit the axis; takes over the breakpoints of one. */
+export function startFrom(context: Context, drawing: Drawing, taken: () => void): HTMLElement {
   const { curve } = drawing;
-  const laws = lawsToPick(workspace).filter(
-    (it) => it.breakpoints && it.position_unit === curve.position_unit && it.force_unit === curve.force_unit,
-  );
+  let laws: WorkspaceLaw[] = [];
   const take = async (id: string, name: string): Promise<void> => {
     try {
       const { contact_position, closing_direction, penetration, closing, opening } = await context.api.get<LawKnots>(
@@ -35,18 +33,20 @@ export function startFrom(context: Context, drawing: Drawing, workspace: Workspa
       context.complain(error);
     }
   };
-  const node = element(
-    "select",
-    {
-      change: () => {
-        const law = laws.find((it) => it.id === node.value);
-        node.value = "";
-        if (law) void take(law.id, law.name);
-      },
-    },
-    element("option", { value: "" }, laws.length > 0 ? "choose" : "none here fits"),
-    ...laws.map((it) => element("option", { value: it.id }, it.name)),
-  );
-  node.disabled = laws.length === 0;
+  const node = select([], "", (id) => {
+    const law = laws.find((it) => it.id === id);
+    node.value = "";
+    if (law) void take(law.id, law.name);
+  });
+  context.onFolder((workspace) => {
+    laws = lawsToPick(workspace).filter(
+      (it) => it.breakpoints && it.position_unit === curve.position_unit && it.force_unit === curve.force_unit,
+    );
+    setOptions(node, [
+      { value: "", text: laws.length > 0 ? "choose" : "none here fits" },
+      ...laws.map((it) => ({ value: it.id, text: it.name })),
+    ]);
+    node.disabled = laws.length === 0;
+  });
   return labelled("Start from law", node);
 }

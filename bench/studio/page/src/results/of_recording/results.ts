@@ -65,7 +65,7 @@ export class ResultsOfRecording {
     const { context, tab } = this;
     try {
       const found = await this.latest.ask(async (signal) => {
-        const workspace = await context.api.get<Workspace>("/api/workspace", {}, signal);
+        const workspace = await context.folder();
         const files = resultsOf(workspace, this.recording.name, tab.kinds);
         const asked = context.state.get(tab.key);
         const file = asked === null ? usual(files, tab.kinds[0]) : this.asked(workspace, asked);

@@ -1,5 +1,5 @@
 import type { Workspace } from "../../api/workspace";
-import { element, labelled, select } from "../../ui/dom";
+import { element, labelled, select, setOptions } from "../../ui/dom";
 import type { Context } from "../../ui/view";
 import type { JobList } from "../jobs";
 import { lawsToPick } from "../../laws";
@@ -31,15 +31,27 @@ export function stabilityForm(context: Context, workspace: Workspace, chosen: st
   const cells = number(40, 2, 60, 1);
   const depth = number(10, 0.01, 500, "any");
   const speed = number(0.2, 0.0001, 10, "any");
-  const laws = lawsToPick(workspace);
-  let law = laws.some((it) => it.id === chosen) ? chosen : "";
+  const law = select([], "", () => (of_law.hidden = !law.value));
   let grip = "light";
   const of_law = element(
     "div",
-    { class: "row", hidden: !law },
+    { class: "row" },
     labelled("Depth of the tool [mm]", depth),
     labelled("Speed of the tool [m/s]", speed),
   );
+  const offer = (folder: Workspace, wanted = law.value): void => {
+    setOptions(
+      law,
+      [
+        { value: "", text: "walls, over stiffness and damping" },
+        ...lawsToPick(folder).map((it) => ({ value: it.id, text: it.name })),
+      ],
+      wanted,
+    );
+    of_law.hidden = !law.value;
+  };
+  offer(workspace, chosen);
+  context.onFolder((folder) => offer(folder));
   const submit = (event: Event): void => {
     event.preventDefault();
     context.say("");
@@ -48,7 +60,7 @@ export function stabilityForm(context: Context, workspace: Workspace, chosen: st
       rate_hz: Number(rate.value),
       grip,
       cells: Number(cells.value),
-      ...(law ? { law, depth_m: Number(depth.value) / 1000, speed_m_s: Number(speed.value) } : {}),
+      ...(law.value ? { law: law.value, depth_m: Number(depth.value) / 1000, speed_m_s: Number(speed.value) } : {}),
     };
     void jobs.order("/api/stability", order, (file) => context.go("stability", file));
   };
@@ -70,20 +82,7 @@ export function stabilityForm(context: Context, workspace: Workspace, chosen: st
     element(
       "div",
       { class: "row" },
-      labelled(
-        "Map of",
-        select(
-          [
-            { value: "", text: "walls, over stiffness and damping" },
-            ...laws.map((it) => ({ value: it.id, text: it.name })),
-          ],
-          law,
-          (value) => {
-            law = value;
-            of_law.hidden = !law;
-          },
-        ),
-      ),
+      labelled("Map of", law),
       element("button", { type: "submit", class: "firm" }, "Map"),
     ),
     of_law,

@@ -1,7 +1,7 @@
 import type { Api } from "../../api/api";
 import type { Trace } from "../../api/recordings";
 import { inWords } from "../../recordings/trace_groups";
-import { element, labelled, select } from "../../ui/dom";
+import { element, labelled, select, setOptions } from "../../ui/dom";
 import { Latest } from "../../ui/latest";
 import { plain, withUnit } from "../../ui/numbers";
 import { palette } from "../../ui/palette";
@@ -50,8 +50,10 @@ export class SpectrumView {
     const first = (start: string): string | undefined => traces.find((it) => it.name.startsWith(start))?.name;
     const usual = first("force_measured") ?? first("force_commanded") ?? traces[0]?.name ?? "";
     const chosen = traces.some((it) => it.name === this.wanted) ? this.wanted : usual;
-    this.trace.replaceChildren(
-      ...traces.map((it) => element("option", { value: it.name, selected: it.name === chosen }, inWords(it.name))),
+    setOptions(
+      this.trace,
+      traces.map((it) => ({ value: it.name, text: inWords(it.name) })),
+      chosen,
     );
     this.spectrum = null;
     this.asked = 0;

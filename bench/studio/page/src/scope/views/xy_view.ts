@@ -1,4 +1,4 @@
-import { element, labelled, select } from "../../ui/dom";
+import { element, labelled, select, setOptions } from "../../ui/dom";
 import { palette } from "../../ui/palette";
 import { columnsWithin, type TimeLine } from "../../ui/time/time_line";
 import { clipTo, drawAxes } from "./canvas_axes";
@@ -35,8 +35,9 @@ export class XyView {
     const x = names.includes(this.wanted.x) ? this.wanted.x : usual("position");
     const force = names.some((it) => it.startsWith("force measured")) ? "force measured" : "force commanded";
     const y = names.includes(this.wanted.y) ? this.wanted.y : usual(force);
-    for (const [list, chosen] of [[this.x, x] as const, [this.y, y] as const])
-      list.replaceChildren(...names.map((it) => element("option", { value: it, selected: it === chosen }, it)));
+    const options = names.map((it) => ({ value: it, text: it }));
+    setOptions(this.x, options, x);
+    setOptions(this.y, options, y);
   }
 
   draw(from: number, to: number): void {

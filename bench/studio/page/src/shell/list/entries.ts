@@ -47,13 +47,17 @@ function resultsByStem(files: readonly WorkspaceFile[]): Map<string, Set<string>
 }
 
 function recordingEntry(it: WorkspaceRecording, results: Map<string, Set<string>>): Entry {
-  const facts = [it.seconds === undefined ? bytes(it.bytes) : length(it.seconds), since(it.modified)];
   return {
     id: it.id,
     name: it.name,
     address: `#/recording/${it.id}/time`,
-    facts: facts.filter(Boolean).join(" · "),
-    marks: it.partial ? ["not closed"] : [...(results.get(stemOf(it.name)) ?? [])],
+    // Told when somebody looks: of thousands, twenty are seen.
+    get facts() {
+      return `${it.seconds === undefined ? bytes(it.bytes) : length(it.seconds)} · ${since(it.modified)}`;
+    },
+    get marks() {
+      return it.partial ? ["not closed"] : [...(results.get(stemOf(it.name)) ?? [])];
+    },
     modified: it.modified,
     seconds: it.seconds ?? 0,
     bytes: it.bytes,
@@ -128,7 +132,8 @@ export function chosen(entries: readonly Entry[], words: string, order: Order): 
     const text = `${it.name} ${it.facts} ${it.marks.join(" ")}`.toLowerCase();
     return wanted.every((word) => text.includes(word));
   };
-  return entries.filter(has).sort((a, b) => byOrder[order](a, b) || names.compare(a.name, b.name));
+  const found = words.trim() ? entries.filter(has) : [...entries];
+  return found.sort((a, b) => byOrder[order](a, b) || names.compare(a.name, b.name));
 }
 
 /** "4 min ago", "3 Nov", "3 Nov 2024". */
@@ -139,6 +144,7 @@ export function since(iso: string, now = new Date()): string {
   if (seconds >= 0 && seconds < 60) return "just now";
   if (seconds >= 0 && seconds < 3600) return `${plain(Math.floor(seconds / 60))} min ago`;
   if (seconds >= 0 && seconds < 12 * 3600) return `${plain(Math.floor(seconds / 3600))} h ago`;
-  const year = at.getFullYear() === now.getFullYear() ? {} : { year: "numeric" as const };
-  return at.toLocaleDateString("en-GB", { day: "numeric", month: "short", ...year });
+  const year = at.getFullYear() === now.getFullYear() ? "" : ` ${at.getFullYear()}`;
+  return `${at.getDate()} ${months[at.getMonth()]}${year}`;
 }
+const months = "Jan Feb Mar Apr May Jun Jul Aug Sept Oct Nov Dec".split(" ");

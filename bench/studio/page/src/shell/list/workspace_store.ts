@@ -7,15 +7,16 @@ const every_ms = 4000;
 export class WorkspaceStore {
   current: Workspace | null = null;
   private state = ""; // of the folder, as the server names it
-  private asking = false;
+  private looking: Promise<Workspace> | null = null;
+  private next: Promise<Workspace> | null = null; // which begins when that has ended
   private readonly listeners = new Set<(workspace: Workspace) => void>();
 
   constructor(private readonly api: Api) {
     setInterval(() => {
-      if (!document.hidden) void this.look();
+      if (!document.hidden) this.look();
     }, every_ms);
-    addEventListener("focus", () => void this.look());
-    void this.look();
+    addEventListener("focus", () => this.look());
+    this.look();
   }
 
   /** Told now, if it is known, and whenever it has changed. */
@@ -25,20 +26,32 @@ export class WorkspaceStore {
     return () => this.listeners.delete(listener);
   }
 
-  /** Looks again: the server says in a few bytes that nothing has changed. */
-  async look(): Promise<void> {
-    if (this.asking) return;
-    this.asking = true;
-    try {
-      const found = await this.api.get<Workspace | { unchanged: true }>("/api/workspace", { unless: this.state });
-      if ("unchanged" in found) return;
-      this.current = found;
-      this.state = found.state;
-      for (const it of [...this.listeners]) it(found);
-    } catch {
-      // the bar says that the studio does not answer
-    } finally {
-      this.asking = false;
+  /** Looks again; that the studio does not answer is for the bar to say. */
+  look(): void {
+    this.now().catch(() => {});
+  }
+
+  /** What is there now, not before this is called; the server says in a few bytes that nothing has changed. */
+  async now(signal?: AbortSignal): Promise<Workspace> {
+    this.next ??= (this.looking ?? Promise.resolve())
+      .catch(() => {})
+      .then(() => {
+        this.looking = this.ask().finally(() => (this.looking = null));
+        this.next = null;
+        return this.looking;
+      });
+    const found = await this.next;
+    signal?.throwIfAborted();
+    return found;
+  }
+
+  private async ask(): Promise<Workspace> {
+    const found = await this.api.get<Workspace | { unchanged: true }>("/api/workspace", { unless: this.state });
+    if (!this.current || !("unchanged" in found)) {
+      this.current = found as Workspace;
+      this.state = this.current.state;
+      for (const it of [...this.listeners]) it(this.current);
     }
+    return this.current;
   }
 }

@@ -1,0 +1,88 @@
+#include "workspace/workspace_routes.h"
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <kerf/schema/recording.h>
+
+#include "bench/studio/server/asker.h"
+#include "support/program.h"
+#include "support/recordings.h"
+#include "workspace/workspace.h"
+
+namespace kerf::bench {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+class WorkspaceRoutes : public testing::Test {
+ protected:
+  WorkspaceRoutes() { add_workspace_routes(routes_, workspace_, "sim:scissors"); }
+
+  json folder(const std::string& unless = "") {
+    return json::parse(asker_.get("/api/workspace", {{"unless", unless}}).body);
+  }
+  /// The state after a change, of which the folder's asker is told.
+  std::string other_than(const std::string& before, const char* what) {
+    const json now = folder(before);
+    EXPECT_FALSE(now.contains("unchanged")) << what;
+    return now.value("state", before);
+  }
+
+  test::TemporaryFolder folder_;
+  Workspace workspace_{folder_.path()};
+  Routes routes_;
+  test::Asker asker_{routes_};
+};
+
+TEST_F(WorkspaceRoutes, TellNothingAnewUntilSomethingHasChanged) {
+  std::string state = folder().at("state");
+  EXPECT_EQ(folder(state), json({{"unchanged", true}}));
+  schema::write_recording(folder_ / "cut.h5", test::punch({.seconds = 0.5}));
+  state = other_than(state, "a recording has come");
+  schema::write_recording(folder_ / "cut.h5", test::punch({.seconds = 0.6}));
+  state = other_than(state, "it is another");
+  std::ofstream(folder_ / "a.law.toml") << "nothing";
+  state = other_than(state, "a law has come");
+  fs::rename(folder_ / "a.law.toml", folder_ / "b.law.toml");
+  state = other_than(state, "it has another name");
+  fs::remove(folder_ / "b.law.toml");
+  state = other_than(state, "it is gone");
+  EXPECT_EQ(folder(state), json({{"unchanged", true}}));
+}
+
+TEST_F(WorkspaceRoutes, ListEveryFileByWhatItIs) {
+  schema::write_recording(folder_ / "cut.h5", test::punch({.seconds = 0.5}));
+  std::ofstream(folder_ / "a.law.toml") << "nothing";
+  std::ofstream(folder_ / "fit.json") << "{}";
+  const json all = folder();
+  ASSERT_EQ(all.at("recordings").size(), 1U);
+  const json& cut = all["recordings"][0];
+  EXPECT_EQ(cut.at("name"), "cut.h5");
+  EXPECT_EQ(cut.at("id"), workspace_.id_of(folder_ / "cut.h5"));
+  EXPECT_EQ(cut.at("bytes"), fs::file_size(folder_ / "cut.h5"));
+  EXPECT_EQ(cut.at("partial"), false);
+  EXPECT_NEAR(cut.at("seconds").get<double>(), 0.5, 0.01);
+  ASSERT_EQ(all.at("laws").size(), 1U);
+  EXPECT_NE(all["laws"][0].at("error"), "");
+  ASSERT_EQ(all.at("files").size(), 1U);
+  EXPECT_EQ(all["files"][0].at("kind"), "fit");
+  EXPECT_EQ(all.at("sessions").size(), 0U);
+  EXPECT_EQ(all.at("unlooked"), 0);
+}
+
+TEST_F(WorkspaceRoutes, ListFilesWhoseNamesAreNoText) {
+  schema::write_recording(folder_ / "c\xFF.h5", test::punch({.seconds = 0.5}));
+  schema::write_recording(folder_ / "cut.h5", test::punch({.seconds = 0.5}));
+  const json all = folder();
+  ASSERT_EQ(all.at("recordings").size(), 2U);
+  EXPECT_EQ(all["recordings"][1].at("name"), "c\uFFFD.h5");
+  EXPECT_EQ(all["recordings"][1].at("id"), workspace_.id_of(folder_ / "c\xFF.h5"));
+}
+
+}  // namespace
+}  // namespace kerf::bench
