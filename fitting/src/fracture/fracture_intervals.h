@@ -29,8 +29,8 @@ struct ByEvents {
 ///
 /// A law that misfits has further minima, far from the best one. Those that the search met are choices too,
 /// with what lies about them, as long as their sum of squares rises by less than t^2 u + 2 t sqrt(u D), u the
-/// mean square that is left times its correlation time, D the sum of squares between the two forces: what noise
-/// of that strength lets it rise by, where neither is true. After [Vuong1989].
+/// mean square that is left times its correlation time, D the sum of squares between the two forces: what
+/// noise of that strength lets it rise by, where neither is true. After [Vuong1989].
 [[nodiscard]] ByEvents limits_by_events(const Problem& problem, const Samples& samples,
                                         const Weights& weights, const Solution& solution,
                                         const RobustLoss& loss, const Linearisation& linear,

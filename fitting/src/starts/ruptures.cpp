@@ -1,8 +1,8 @@
+#include "starts/ruptures.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
-
-#include "starts/ruptures.h"
 
 namespace kerf::fitting {
 namespace {
