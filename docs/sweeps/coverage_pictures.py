@@ -81,7 +81,7 @@ def main(folder):
             for name in names:
                 value = float(target[name][at])
                 lower, upper = table[name + "_lower"][:][is_it], table[name + "_upper"][:][is_it]
-                there = ~numpy.isnan(lower) & ~numpy.isnan(upper)
+                there = numpy.isfinite(lower) | numpy.isfinite(upper)
                 toml += (
                     f'[[picture.shares]]\nname = "{name}"\nat = "{title}"\n'
                     f'share = "{name}_lower <= {value!r} & {name}_upper >= {value!r}"\n'

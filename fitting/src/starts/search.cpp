@@ -7,8 +7,8 @@
 #include <kerf/models/foreign.h>
 
 #include "fracture/fracture_fit.h"
+#include "ruptures/rupture_fit.h"
 #include "segmented/segmented_law.h"
-#include "starts/ruptures.h"
 #include "starts/scan.h"
 #include "starts/threshold.h"
 #include "tables.h"
@@ -182,7 +182,7 @@ Solution search(const Problem& problem, const Samples& samples, const Weights& w
     case models::Search::fracture:
       return solve_fracture(problem, samples, weights, near, options);
     case models::Search::ruptures:
-      return solve_ruptures(problem, samples, weights);
+      return solve_ruptures(problem, samples, weights, options);
     case models::Search::descent:
     case models::Search::none:
     case models::Search::blade:

@@ -7,6 +7,7 @@
 
 #include "fracture/fracture_intervals.h"
 #include "infinite.h"
+#include "ruptures/rupture_intervals.h"
 #include "tables.h"
 #include "uncertainty/arms.h"
 #include "uncertainty/limits.h"
@@ -133,7 +134,11 @@ class Estimation {
       inner.free[coordinate.parameter] = false;
       at_bounds.push_back(coordinate);
     }
-    if (inner.coordinates() > 0) estimate_within(inner);
+    if (inner.facts().search == models::Search::ruptures) {
+      estimate_between_ruptures(inner);
+    } else if (inner.coordinates() > 0) {
+      estimate_within(inner);
+    }
     for (const auto& coordinate : at_bounds) estimate_at_bound(inner, coordinate);
     name_arms();
     for (Unknown& unknown : unknowns_) result_.warnings.push_back(std::move(unknown.warning));
@@ -173,11 +178,45 @@ class Estimation {
       if (!events_.warning.empty()) result_.warnings.push_back(events_.warning);
     }
     result_.correlation_time = std::min(uncertainty.correlation_time, static_cast<double>(samples_.size()));
-    if (none) return take_none(inner);
+    if (none)
+      return take_none(
+          inner, "the memberships were trained on means, and are not those of least squares: no intervals");
     take(inner, uncertainty, limits);
     if (options_.profile) {
       result_.profiles =
           profiles_of(inner, samples_, weights_, solution_.values, loss_, uncertainty, result_.searched);
+    }
+  }
+
+  /// Between its ruptures the law is an element, whose intervals are those of one; of the line at which it
+  /// ruptures the rows tell that do.
+  void estimate_between_ruptures(const Problem& inner) {
+    BetweenRuptures between(inner, samples_, weights_, solution_, loss_);
+    Problem& element = between.parts.element;
+    std::copy_n(inner.free.begin(), element.free.size(), element.free.begin());
+    if (element.coordinates() == 0) return;
+    const Solution alone = between.alone(loss_);
+    const LawObjective objective(element, between.parts.samples, between.parts.weights, alone.values, loss_);
+    const Eigen::VectorXd at = coordinates_of(element, alone.values);
+    if (options_.intervals == Intervals::white) {
+      const Uncertainty white =
+          as_of_white_noise(objective, at, alone, between.parts.weights, options_.confidence);
+      result_.covariance_by = CovarianceBy::white;
+      take(element, white, wald_limits_of(element, at, white));
+      return take_line(inner, {});
+    }
+    const Linearisation linear = linearise(objective, element, alone, samples_, weights_, loss_);
+    Uncertainty uncertainty = uncertainty_of(linear, options_.confidence);
+    const std::vector<Limits> limits = limits_within(element, objective, at, linear, uncertainty);
+    result_.covariance_by = uncertainty.by_cycles ? CovarianceBy::cycles : CovarianceBy::residuals;
+    result_.correlation_time = std::min(uncertainty.correlation_time, static_cast<double>(samples_.size()));
+    const ByRuptures line = limits_by_ruptures(between, loss_, alone.squares, uncertainty);
+    if (!line.doubt.empty()) return take_none(inner, line.doubt + ": no intervals");
+    take(element, uncertainty, limits);
+    take_line(inner, line);
+    if (options_.profile) {
+      result_.profiles = profiles_of(element, between.parts.samples, between.parts.weights, alone.values,
+                                     loss_, uncertainty, result_.searched);
     }
   }
 
@@ -236,11 +275,23 @@ class Estimation {
   }
 
   /// Estimates that are not those of least squares vary otherwise than these do: by how much is not known.
-  void take_none(const Problem& inner) {
+  void take_none(const Problem& inner, std::string why) {
     known_.of = inner.all();
     known_.known.assign(known_.of.size(), Known{.std_error = infinite, .limits = {}});
-    unknowns_.push_back(
-        {{}, "the memberships were trained on means, and are not those of least squares: no intervals"});
+    unknowns_.push_back({{}, std::move(why)});
+  }
+
+  /// What is known of the line at which tissue ruptures, besides the element that does.
+  void take_line(const Problem& inner, const ByRuptures& line) {
+    for (const auto& coordinate : inner.all()) {
+      const std::string& name = inner.parameters[coordinate.parameter].name;
+      if (known_.find(coordinate.parameter, 0) != nullptr) continue;
+      const Limits& limits = name.starts_with("per_speed") ? line.per_speed : line.constant;
+      known_.of.push_back(coordinate);
+      known_.known.push_back({.std_error = line.std_error(limits), .limits = limits});
+      if (!std::isfinite(known_.known.back().std_error))
+        unknowns_.push_back({{name}, hardly_known(name, limits)});
+    }
   }
 
   /// What the rows that break say of a coordinate; NaN where they say nothing.

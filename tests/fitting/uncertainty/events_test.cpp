@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -18,12 +19,12 @@ using models::Law;
 using test::Scenario;
 
 /// Three strokes, each deeper than the one before.
-test::Path deeper_strokes(double depth_m) {
-  constexpr double rows = 200.0;  // a stroke
+test::Path deeper_strokes(double depth_m, int rows_a_stroke = 200) {
+  const double rows = rows_a_stroke;
   test::Path path;
-  for (int i = 0; i < 600; ++i) {
+  for (int i = 0; i < 3 * rows_a_stroke; ++i) {
     const double phase = 2.0 * std::numbers::pi * i / rows;
-    const double depth = depth_m * (0.7 + 0.0005 * i);
+    const double depth = depth_m * (0.7 + 0.1 * i / rows);
     path.push_back({.penetration = 0.5 * depth * (1.0 - std::cos(phase)),
                     .velocity = std::numbers::pi * depth * std::sin(phase) / (rows * test::tick_s)});
   }
@@ -136,6 +137,85 @@ TEST(FuzzyRupture, OfMembershipsThatWereTrainedOnMeansHasNoIntervals) {
   const FitResult fit = fitted(two, 0.1, 1, {{"memberships", 2.0}});
   for (const Estimate& estimate : fit.parameters)
     EXPECT_EQ(estimate.by, IntervalBy::none) << estimate.info.name;
+  EXPECT_THAT(fit.warnings, testing::Contains(testing::HasSubstr("no intervals")));
+}
+
+/// Ruptures at 0.9 N and more the faster, in each of three strokes.
+Scenario ruptures() {
+  const Law law =
+      Law::make("fuzzy_kelvin", std::vector{100.0, 160.0, 16.0, 0.0, 1.0, 0.0, 1.0, 0.0, 4.0, 0.9}, one_rule);
+  return {"", "fuzzy_kelvin", law, deeper_strokes(0.025, 1000), {}};
+}
+
+TEST(FuzzyKelvin, IsFoundWithoutNoiseAndItsThresholdAsFarAsTheRowsTell) {
+  const FitResult fit = fitted(ruptures(), 0.0, 1);
+  EXPECT_NEAR(fit.parameters.at(0).value, 100.0, 1e-4);
+  EXPECT_NEAR(fit.parameters.at(1).value, 160.0, 1e-4);
+  EXPECT_NEAR(fit.parameters.at(2).value, 16.0, 1e-4);
+  EXPECT_LT(fit.rmse, 1e-7);
+  for (const auto& [at, truth] : {std::pair{8, 4.0}, std::pair{9, 0.9}}) {
+    const Estimate& estimate = fit.parameters.at(static_cast<std::size_t>(at));
+    EXPECT_NEAR(estimate.value, truth, 0.1 * truth) << estimate.info.name;
+    EXPECT_LE(estimate.lower, truth) << estimate.info.name;
+    EXPECT_GE(estimate.upper, truth) << estimate.info.name;
+  }
+}
+
+TEST(FuzzyKelvin, IntervalsHoldAsTheySayUnderMuchNoise) {
+  constexpr std::size_t seeds = 100;
+  EXPECT_THAT(held_of(ruptures(), 0.1, seeds, {0, 1, 2, 8, 9}), testing::Each(HoldAsTheySay(seeds)));
+}
+
+TEST(FuzzyKelvin, OfRupturesThatWereNotSeenIsFoundByTheOthers) {
+  const Scenario scenario = ruptures();
+  std::vector<double> time_s, penetration, velocity;
+  for (const models::Motion& motion : scenario.path) {
+    time_s.push_back(test::tick_s * static_cast<double>(time_s.size()));
+    penetration.push_back(motion.penetration);
+    velocity.push_back(motion.velocity);
+  }
+  const std::vector<double> force = test::measured(scenario, {});
+  const FitResult fit = fitting::fit(
+      "fuzzy_kelvin",
+      Series{.time_s = time_s, .penetration = penetration, .velocity = velocity, .force = force, .cycle = {}},
+      {.folds = 5});
+  EXPECT_LT(fit.cv_rmse, 0.1) << "of forces up to 1.2 N";
+}
+
+/// Goes on at one speed, and ruptures at 0.9 and at 1.3 N by turns.
+struct Turns {
+  std::vector<double> time_s, penetration, velocity, force;
+  Turns() {
+    const models::Kelvin<double> element{100.0, 160.0, 16.0};
+    models::Kelvin<double>::State state;
+    double reference = 0.0;
+    bool high = false;
+    for (int i = 0; i < 600; ++i) {
+      time_s.push_back(test::tick_s * i);
+      penetration.push_back(1e-4 * i);
+      velocity.push_back(0.1);
+      force.push_back(element.step(state, {penetration.back() - reference, 0.1}, test::tick_s));
+      if (force.back() < (high ? 1.3 : 0.9)) continue;
+      state = {};
+      reference = penetration.back();
+      force.back() = element.step(state, {0.0, 0.1}, test::tick_s);
+      high = !high;
+    }
+  }
+};
+
+TEST(FuzzyKelvin, HasNoIntervalsWhereNoLineIsTheThreshold) {
+  const Turns turns;
+  const FitResult fit = fitting::fit("fuzzy_kelvin",
+                                     Series{.time_s = turns.time_s,
+                                            .penetration = turns.penetration,
+                                            .velocity = turns.velocity,
+                                            .force = turns.force,
+                                            .cycle = {}},
+                                     {.folds = 0});
+  for (const std::size_t at : {0, 1, 2, 8, 9}) {
+    EXPECT_EQ(fit.parameters.at(at).by, IntervalBy::none) << fit.parameters.at(at).info.name;
+  }
   EXPECT_THAT(fit.warnings, testing::Contains(testing::HasSubstr("no intervals")));
 }
 

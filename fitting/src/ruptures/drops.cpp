@@ -1,0 +1,89 @@
+#include "ruptures/drops.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kerf::fitting {
+namespace {
+
+constexpr double drop_share = 0.5;
+constexpr double drop_time_s = 0.02;
+constexpr double least_peak_share = 0.1;  ///< of the largest force: what is less is noise
+constexpr double beyond_noise = 5.0;      ///< standard deviations, of a mean drop
+constexpr double beyond_at_once = 4.0;    ///< likewise, of one from a row to the next
+
+std::size_t rows_of_a_drop(const Samples& samples) {
+  return static_cast<std::size_t>(std::max(1.0, std::round(drop_time_s / samples.median_period_s)));
+}
+
+/// Standard deviation of noise from row to row, by what a straight line through three rows leaves.
+double noise_of_rows(const Samples& samples, const Weights& weights) {
+  constexpr double deviation_of_mad = 1.4826;
+  std::vector<double> bends;
+  for (const Run& run : samples.runs) {
+    for (std::size_t i = run.begin + 1; i + 1 < run.end; ++i) {
+      if (weights[i - 1] > 0.0 && weights[i] > 0.0 && weights[i + 1] > 0.0)
+        bends.push_back(std::abs(samples.force[i - 1] - 2.0 * samples.force[i] + samples.force[i + 1]));
+    }
+  }
+  if (bends.empty()) return 0.0;
+  const auto middle = bends.begin() + static_cast<std::ptrdiff_t>(bends.size() / 2);
+  std::nth_element(bends.begin(), middle, bends.end());
+  return deviation_of_mad * *middle / std::sqrt(6.0);
+}
+
+/// By how much the force is less in the 20 ms from a row on than in those before it, on average.
+double mean_drop(const Samples& samples, std::size_t row) {
+  const std::size_t many = rows_of_a_drop(samples);
+  const auto mean = [&](std::size_t from) {
+    double sum = 0.0;
+    for (std::size_t i = from; i < from + many; ++i) sum += samples.force[std::min(i, samples.size() - 1)];
+    return sum / static_cast<double>(many);
+  };
+  return mean(row - std::min(row, many)) - mean(row);
+}
+
+}  // namespace
+
+double drop_at(const Samples& samples, std::size_t row) {
+  const double at_once = row > 0 ? samples.force[row - 1] - samples.force[row] : 0.0;
+  return std::max(at_once, mean_drop(samples, row));
+}
+
+RuptureRows drops_of(const Samples& samples, const Weights& weights) {
+  const double largest = *std::ranges::max_element(samples.force);
+  const double noise = noise_of_rows(samples, weights);
+  const double least_peak = std::max(least_peak_share * largest, beyond_noise * noise);
+  const std::size_t ahead = rows_of_a_drop(samples);
+  const double least_drop = beyond_noise * noise * std::sqrt(2.0 / static_cast<double>(ahead));
+  const double least_at_once = beyond_at_once * noise * std::sqrt(2.0);
+  const std::vector<double>& force = samples.force;
+  const auto at_once = [&](std::size_t j) {
+    return force[j - 1] - force[j] >= std::max(drop_share * force[j - 1], least_at_once) &&
+           force[j - 1] >= least_peak;
+  };
+  RuptureRows rows;
+  for (const Run& run : samples.runs) {
+    for (std::size_t i = run.begin; i + 1 < run.end; ++i) {
+      const double peak = force[i];
+      if (!(weights[i] > 0.0) || peak < least_peak || !(samples.motion[i].velocity > 0.0)) continue;
+      const std::size_t last = std::min(i + ahead, run.end - 1);
+      std::size_t low = i;
+      std::size_t row = i + 1;
+      bool falls_at_once = false;
+      for (std::size_t j = i + 1; j <= last && !falls_at_once; ++j) {
+        if (force[j] < force[low]) low = j;
+        falls_at_once = at_once(j);
+        if (falls_at_once || force[j - 1] - force[j] > force[row - 1] - force[row]) row = j;
+      }
+      if (falls_at_once) low = row;
+      if (force[low] > (1.0 - drop_share) * peak || !(weights[row] > 0.0)) continue;
+      if (!falls_at_once && mean_drop(samples, row) < least_drop) continue;
+      rows.push_back(row);
+      i = std::max(row, low);
+    }
+  }
+  return rows;
+}
+
+}  // namespace kerf::fitting
