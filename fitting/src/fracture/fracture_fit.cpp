@@ -19,14 +19,14 @@ class FractureDescent {
       : objective_(problem, samples, weights, loss), coordinates_(objective_.coordinates()) {}
 
   [[nodiscard]] const FractureObjective& objective() const { return objective_; }
-  [[nodiscard]] Standing place(const Eigen::VectorXd& at) const {
+  [[nodiscard]] FracturePlace place(const Eigen::VectorXd& at) const {
     return {.at = at, .squares = objective_.squares(at)};
   }
   [[nodiscard]] int iterations() const { return iterations_; }
 
   /// Depth and crack step over rows that break by one or the other, looked at over a range that shrinks;
   /// tissue follows.
-  void step_over_rows(Standing& place, double range, int fewest_rounds, double worth_a_round) {
+  void step_over_rows(FracturePlace& place, double range, int fewest_rounds, double worth_a_round) {
     constexpr int most_rounds = 8;
     for (int round = 0; round < most_rounds; ++round, range *= 0.25) {
       const double before = place.squares;
@@ -37,13 +37,13 @@ class FractureDescent {
       if (round + 1 >= fewest_rounds && !(place.squares < (1.0 - worth_a_round) * before)) break;
     }
   }
-  void descend(Standing& place) {
+  void descend(FracturePlace& place) {
     constexpr int most_steps = 8;
     take(place, descend_by_steps(objective_, place.at, coordinates_.bounds(), most_steps));
   }
   /// Goes on to the least squares among the places where the same rows break, and over to the next such
   /// places where they leave less.
-  void settle(Standing& place) {
+  void settle(FracturePlace& place) {
     constexpr int most_cells = 6;
     constexpr int most_steps = 30;
     constexpr double to_the_end = 1e-10;
@@ -62,7 +62,7 @@ class FractureDescent {
   }
 
   /// Depth and crack at once, nearer and nearer.
-  void look_around(Standing& place, double range, int rounds) const {
+  void look_around(FracturePlace& place, double range, int rounds) const {
     constexpr int steps = 6;
     for (int round = 0; round < rounds; ++round, range *= 0.3) {
       const Eigen::VectorXd from = place.at;
@@ -78,17 +78,17 @@ class FractureDescent {
   }
 
  private:
-  void take(Standing& place, const Minimum& minimum) {
+  void take(FracturePlace& place, const Minimum& minimum) {
     iterations_ += minimum.iterations;
     if (minimum.sums.squares <= place.squares) place = {.at = minimum.at, .squares = minimum.sums.squares};
   }
-  void look_at(Standing& place, const Eigen::VectorXd& at) const {
-    Standing there = objective_.rows(at).with_best_tissue(coordinates_, at);
+  void look_at(FracturePlace& place, const Eigen::VectorXd& at) const {
+    FracturePlace there = objective_.rows(at).with_best_tissue(coordinates_, at);
     if (there.squares < place.squares) place = std::move(there);
   }
   /// A depth of yielding that no force tells, but for which rows break, is taken for the middle of what these
   /// leave.
-  void centre(Standing& place) const {
+  void centre(FracturePlace& place) const {
     constexpr double as_good = 1e-12;
     const FractureCell cell = objective_.cell(place.at);
     if (!(cell.depth_from > 0.0) || std::isinf(cell.depth_to)) return;
@@ -106,7 +106,7 @@ class FractureDescent {
     }
   }
   template <typename Move>
-  void look_along(Standing& place, double range, Move&& move) const {
+  void look_along(FracturePlace& place, double range, Move&& move) const {
     constexpr int steps = 5;
     const Eigen::VectorXd from = place.at;
     for (int i = -steps; i <= steps; ++i) {
@@ -157,24 +157,24 @@ Solution solve_fracture(const Problem& problem, const Samples& samples, const We
   const Samples few = thinned(samples, few_rows);
   const Weights light = thinned_weights(samples, weights, few);
   FractureDescent on_few(problem, few, light, options.loss);
-  std::vector<Standing> places;
+  std::vector<FracturePlace> places;
   if (near.empty()) {
     places = fracture_starts(on_few.objective(), samples.most, grid_for(few, to_the_end));
   } else {
     places.push_back(on_few.place(coordinates.at(near[0])));
   }
   if (places.empty()) return {.values = {}, .message = "too few samples before the tissue yields"};
-  for (Standing& place : places)
+  for (FracturePlace& place : places)
     on_few.step_over_rows(place, near.empty() ? between_places : beside_a_place, 3, much_of_the_squares);
   if (to_the_end) {
-    std::ranges::sort(places, {}, &Standing::squares);
+    std::ranges::sort(places, {}, &FracturePlace::squares);
     for (std::size_t i = 0; i < std::min(likeliest, places.size()); ++i)
       on_few.look_around(places[i], around_a_place, 3);
   }
   FractureDescent on_all(problem, samples, weights, options.loss);
-  for (Standing& place : places) place = on_all.place(place.at);
-  std::ranges::sort(places, {}, &Standing::squares);
-  Standing best = places.front();
+  for (FracturePlace& place : places) place = on_all.place(place.at);
+  std::ranges::sort(places, {}, &FracturePlace::squares);
+  FracturePlace best = places.front();
   if (to_the_end) {
     on_all.step_over_rows(best, beside_a_place, 2, little_of_the_squares);
     on_all.settle(best);

@@ -100,13 +100,13 @@ Sums FractureRows::robust_sums(const Eigen::VectorXd& at, double rate, double sh
   return sums;
 }
 
-Standing FractureRows::tissue(const Coordinates& coordinates, const Eigen::VectorXd& start,
-                              Fitted which) const {
+FracturePlace FractureRows::tissue(const Coordinates& coordinates, const Eigen::VectorXd& start,
+                                   Fitted which) const {
   constexpr int most_steps = 8;
   constexpr double enough = 1e-3;         // of the logarithm of the exponent: what is left is its square
   constexpr double largest_change = 1.0;  // of that
   constexpr double most_growth = 300.0;   // whose exponential has a square
-  Standing best{.at = start};
+  FracturePlace best{.at = start};
   Eigen::VectorXd at = start;
   double change = 0.0;
   for (int i = 0; i < most_steps; ++i) {
@@ -150,8 +150,9 @@ Standing FractureRows::tissue(const Coordinates& coordinates, const Eigen::Vecto
   return best;
 }
 
-Standing FractureRows::with_best_tissue(const Coordinates& coordinates, const Eigen::VectorXd& at) const {
-  Standing best{.at = at};
+FracturePlace FractureRows::with_best_tissue(const Coordinates& coordinates,
+                                             const Eigen::VectorXd& at) const {
+  FracturePlace best{.at = at};
   if (loss_.kind == Loss::squares) {
     best = tissue(coordinates, at, Fitted::whole_and_cut);
     best.squares += without_force_ + cut_.about_the_mean;
@@ -162,8 +163,9 @@ Standing FractureRows::with_best_tissue(const Coordinates& coordinates, const Ei
   return best;
 }
 
-Standing FractureRows::with_short_crack(const Coordinates& coordinates, const Eigen::VectorXd& at) const {
-  Standing best = tissue(coordinates, at, Fitted::whole);
+FracturePlace FractureRows::with_short_crack(const Coordinates& coordinates,
+                                             const Eigen::VectorXd& at) const {
+  FracturePlace best = tissue(coordinates, at, Fitted::whole);
   best.squares += without_force_ + cut_.about_the_mean;
   if (cut_.mean > 0.0)
     best.at[Coordinates::crack] += std::log(cutting_at(coordinates, best.at).force_n / cut_.mean);

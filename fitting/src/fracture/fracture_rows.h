@@ -45,7 +45,7 @@ void walk(const Problem& problem, const Samples& samples, double depth_m, double
 }
 
 /// Where a search stands, and the sum of squares there.
-struct Standing {
+struct FracturePlace {
   Eigen::VectorXd at;
   double squares = std::numeric_limits<double>::infinity();
 };
@@ -62,12 +62,12 @@ class FractureRows {
   /// By all four coordinates, of which depth and crack leave every row on its side.
   [[nodiscard]] Sums sums(const FractureCoordinates& coordinates, const Eigen::VectorXd& at) const;
   /// Amplitude and exponent of least squares, from those of `at` on. Under another loss: `at`.
-  [[nodiscard]] Standing with_best_tissue(const FractureCoordinates& coordinates,
-                                          const Eigen::VectorXd& at) const;
+  [[nodiscard]] FracturePlace with_best_tissue(const FractureCoordinates& coordinates,
+                                               const Eigen::VectorXd& at) const;
   /// The same by whole rows alone, and the crack by the force of cutting: of cracks that end behind the tool,
   /// where no row's side depends on their length. Infinite where they do not.
-  [[nodiscard]] Standing with_short_crack(const FractureCoordinates& coordinates,
-                                          const Eigen::VectorXd& at) const;
+  [[nodiscard]] FracturePlace with_short_crack(const FractureCoordinates& coordinates,
+                                               const Eigen::VectorXd& at) const;
 
  private:
   /// Rows of one force.
@@ -76,8 +76,8 @@ class FractureRows {
     double weights = 0.0, mean = 0.0, about_the_mean = 0.0;
   };
   enum class Fitted { whole, whole_and_cut };
-  [[nodiscard]] Standing tissue(const FractureCoordinates& coordinates, const Eigen::VectorXd& at,
-                                Fitted which) const;
+  [[nodiscard]] FracturePlace tissue(const FractureCoordinates& coordinates, const Eigen::VectorXd& at,
+                                     Fitted which) const;
   [[nodiscard]] Sums robust_sums(const Eigen::VectorXd& at, double rate, double shift,
                                  const Eigen::Vector4d& cutting) const;
 

@@ -11,7 +11,7 @@ using Coordinates = FractureCoordinates;
 
 /// A place and where on the grid it lies.
 struct Node {
-  Standing standing;
+  FracturePlace place;
   int depth = 0;
   int crack = 0;  ///< -1: one that ends at the tool
 };
@@ -25,7 +25,7 @@ class FractureScan {
     std::vector<Node> all;
     for (int i = 1; i <= grid_.depths; ++i) {
       const double depth_m = most_m_ * i / (grid_.depths + 1);
-      Standing tissue = with_short_crack(depth_m);
+      FracturePlace tissue = with_short_crack(depth_m);
       all.push_back({tissue, i, -1});
       for (int j = 0; j < grid_.cracks; ++j) {
         Eigen::VectorXd at = tissue.at;
@@ -33,23 +33,23 @@ class FractureScan {
         all.push_back({objective_.rows(at).with_best_tissue(objective_.coordinates(), at), i, j});
       }
     }
-    std::erase_if(all, [](const Node& node) { return !std::isfinite(node.standing.squares); });
-    std::ranges::sort(all, {}, [](const Node& node) { return node.standing.squares; });
+    std::erase_if(all, [](const Node& node) { return !std::isfinite(node.place.squares); });
+    std::ranges::sort(all, {}, [](const Node& node) { return node.place.squares; });
     return all;
   }
 
  private:
   /// From tissue that stiffens little, more and much on the way to the depth, or as at the depth before.
-  [[nodiscard]] Standing with_short_crack(double depth_m) {
+  [[nodiscard]] FracturePlace with_short_crack(double depth_m) {
     constexpr double little = 0.3, more = 2.0, much = 8.0;  // of a logarithm
     const Coordinates& coordinates = objective_.coordinates();
     Eigen::VectorXd at = Eigen::Vector4d(0.0, 0.0, std::log(depth_m), std::log(0.5 * depth_m));
     const FractureRows rows = objective_.rows(at);
-    Standing best{.at = at};
+    FracturePlace best{.at = at};
     for (const double stiffens : {little, more, much}) {
       at[Coordinates::exponent] = std::log(stiffens * coordinates.thickness() / depth_m);
       at[Coordinates::crack] = std::log(0.5 * depth_m);
-      Standing next = rows.with_short_crack(coordinates, at);
+      FracturePlace next = rows.with_short_crack(coordinates, at);
       if (best.squares > next.squares || std::isinf(best.squares)) best = std::move(next);
     }
     return best;
@@ -66,16 +66,16 @@ bool beside(const Node& one, const Node& other) {
 
 }  // namespace
 
-std::vector<Standing> fracture_starts(const FractureObjective& objective, double most_m,
-                                      const FractureGrid& grid) {
+std::vector<FracturePlace> fracture_starts(const FractureObjective& objective, double most_m,
+                                           const FractureGrid& grid) {
   std::vector<Node> apart;
   for (Node& node : FractureScan(objective, most_m, grid).nodes()) {
     if (apart.size() == grid.kept) break;
     const bool is_near = std::ranges::any_of(apart, [&](const Node& kept) { return beside(kept, node); });
     if (!is_near) apart.push_back(std::move(node));
   }
-  std::vector<Standing> places;
-  for (Node& node : apart) places.push_back(std::move(node.standing));
+  std::vector<FracturePlace> places;
+  for (Node& node : apart) places.push_back(std::move(node.place));
   return places;
 }
 

@@ -16,7 +16,7 @@ struct FractureGrid {
 
 /// Places to go on from: of depths and cracks all over the tool's path, amplitude and exponent at their best,
 /// those that leave least, each beyond the neighbours of the ones before. The best comes first.
-[[nodiscard]] std::vector<Standing> fracture_starts(const FractureObjective& objective, double most_m,
-                                                    const FractureGrid& grid);
+[[nodiscard]] std::vector<FracturePlace> fracture_starts(const FractureObjective& objective, double most_m,
+                                                         const FractureGrid& grid);
 
 }  // namespace kerf::fitting
