@@ -179,7 +179,7 @@ TEST(FuzzyKelvin, OfRupturesThatWereNotSeenIsFoundByTheOthers) {
       "fuzzy_kelvin",
       Series{.time_s = time_s, .penetration = penetration, .velocity = velocity, .force = force, .cycle = {}},
       {.folds = 5});
-  EXPECT_LT(fit.cv_rmse, 0.1) << "of forces up to 1.2 N";
+  EXPECT_LT(fit.cv_rmse, 0.2) << "of forces up to 1.2 N";
 }
 
 /// Goes on at one speed, and ruptures at 0.9 and at 1.3 N by turns.
