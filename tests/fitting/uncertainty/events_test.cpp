@@ -213,7 +213,7 @@ TEST(FuzzyKelvin, HasNoIntervalsWhereNoLineIsTheThreshold) {
                                             .force = turns.force,
                                             .cycle = {}},
                                      {.folds = 0});
-  for (const std::size_t at : {0, 1, 2, 8, 9}) {
+  for (const std::size_t at : {0U, 1U, 2U, 8U, 9U}) {
     EXPECT_EQ(fit.parameters.at(at).by, IntervalBy::none) << fit.parameters.at(at).info.name;
   }
   EXPECT_THAT(fit.warnings, testing::Contains(testing::HasSubstr("no intervals")));
