@@ -60,6 +60,10 @@ class Margins {
   /// Whole points that push are below the line wherever those on their upper hull are.
   void add_to_hull(std::size_t i) {
     if (!(value(i) > 0.0)) return;
+    if (!hull_.empty() && points_.speed[hull_.back()] == points_.speed[i]) {
+      if (value(hull_.back()) >= value(i)) return;
+      hull_.pop_back();
+    }
     const auto turns_left = [&](std::size_t a, std::size_t b) {
       return (points_.speed[b] - points_.speed[a]) * (value(i) - value(a)) >=
              (value(b) - value(a)) * (points_.speed[i] - points_.speed[a]);
