@@ -53,7 +53,7 @@ KERF_WIDE_PACKETS void write(Block& block, const models::Friction<double>& law) 
 void Friction::fill(Block& block) noexcept {
   if (!started_) before_ = block.penetration[0];
   started_ = true;
-  Decays decays;
+  Decays decays{};
   decays_of(block, before_, law_.presliding, decays);
   before_ = block.penetration[block.count - 1];
   for (std::size_t i = 0; i < block.padded; ++i) {
