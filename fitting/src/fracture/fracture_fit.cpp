@@ -147,7 +147,6 @@ Solution solve_fracture(const Problem& problem, const Samples& samples, const We
   constexpr double between_places = 0.25;  // of a logarithm
   constexpr double beside_a_place = 0.02;
   constexpr double around_a_place = 0.1;
-  constexpr std::size_t likeliest = 1;
   constexpr double much_of_the_squares = 1e-2;  // that a round more is worth
   constexpr double little_of_the_squares = 1e-3;
   constexpr double only_an_error = 1e-9;  // tolerances above this ask for no more
@@ -167,9 +166,8 @@ Solution solve_fracture(const Problem& problem, const Samples& samples, const We
   for (FracturePlace& place : places)
     on_few.step_over_rows(place, near.empty() ? between_places : beside_a_place, 3, much_of_the_squares);
   if (to_the_end) {
-    std::ranges::sort(places, {}, &FracturePlace::squares);
-    for (std::size_t i = 0; i < std::min(likeliest, places.size()); ++i)
-      on_few.look_around(places[i], around_a_place, 3);
+    const auto likeliest = std::ranges::min_element(places, {}, &FracturePlace::squares);
+    on_few.look_around(*likeliest, around_a_place, 3);
   }
   FractureDescent on_all(problem, samples, weights, options.loss);
   for (FracturePlace& place : places) place = on_all.place(place.at);

@@ -21,7 +21,7 @@ class FractureScan {
   FractureScan(const FractureObjective& objective, double most_m, const FractureGrid& grid)
       : objective_(objective), most_m_(most_m), grid_(grid) {}
 
-  [[nodiscard]] std::vector<Node> nodes() {
+  [[nodiscard]] std::vector<Node> nodes() const {
     std::vector<Node> all;
     for (int i = 1; i <= grid_.depths; ++i) {
       const double depth_m = most_m_ * i / (grid_.depths + 1);
@@ -39,8 +39,8 @@ class FractureScan {
   }
 
  private:
-  /// From tissue that stiffens little, more and much on the way to the depth, or as at the depth before.
-  [[nodiscard]] FracturePlace with_short_crack(double depth_m) {
+  /// From tissue that stiffens little, more and much on the way to the depth.
+  [[nodiscard]] FracturePlace with_short_crack(double depth_m) const {
     constexpr double little = 0.3, more = 2.0, much = 8.0;  // of a logarithm
     const Coordinates& coordinates = objective_.coordinates();
     Eigen::VectorXd at = Eigen::Vector4d(0.0, 0.0, std::log(depth_m), std::log(0.5 * depth_m));

@@ -57,8 +57,7 @@ ElementValues InCell::element() const { return {std::exp(at[0]), std::exp(at[1])
 
 namespace {
 
-/// d of least 1/2 d'Hd + g'd, with a price for each cut value + row d that falls below zero: by its dual, one
-/// cut after another.
+/// Straight cuts of the condition, the last few that were met.
 struct Cuts {
   std::vector<Separation> of;
 
@@ -69,6 +68,8 @@ struct Cuts {
   }
 };
 
+/// d of least 1/2 d'Hd + g'd, with a price for each cut value + row d that falls below zero: by its dual, one
+/// cut after another.
 Eigen::VectorXd step_under(const Eigen::MatrixXd& normal, const Eigen::VectorXd& score,
                            const Eigen::MatrixXd& rows, const Eigen::VectorXd& values, double price) {
   constexpr int most_rounds = 200;

@@ -80,9 +80,10 @@ Trained train_sized(std::string_view model, const FitOptions& options, const Sam
   };
   const auto left = [&] { return residuals_of(law.problem, law.solution.values, samples); };
   const auto search_again = [&] {
-    const int before = law.solution.iterations;
-    law.solution = found_by(law.solution.values);
-    law.solution.iterations += before;
+    Solution before = std::move(law.solution);
+    law.solution = found_by(before.values);
+    law.solution.iterations += before.iterations;
+    law.solution.rivals = std::move(before.rivals);  // which a search from one place does not meet
   };
   law.solution = found_by({});
   if (!law.solution.values.empty() && samples.runs.size() > 1 && samples.runs[0].noise_n == 0.0) {
