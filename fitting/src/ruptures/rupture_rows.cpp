@@ -33,9 +33,7 @@ class Stretched {
   void rupture_at(std::size_t i) {
     reference_ = samples_.motion[i].penetration;
     state_.started = true;
-    state_.arm_force = 0.0;
-    state_.penetration = 0.0;
-    state_.reachable = -1.0;
+    state_.rupture();
   }
 
  private:

@@ -90,9 +90,7 @@ struct FuzzyKelvin {
     ++state.ruptures;
     state.rupture_force = force;
     state.reference = motion.penetration;
-    state.element.arm_force = T(0.0);
-    state.element.penetration = 0.0;
-    state.element.reachable = T(-1.0);
+    state.element.rupture();
     return T(0.0);
   }
 };

@@ -155,11 +155,7 @@ struct FuzzyKelvin3d {
   static void begin_anew(State& state, const AxisValues& p) noexcept {
     state.reference = {p[0], p[1], p[2]};
     state.held_in_depth_j = 0.0;
-    for (auto& one : state.element) {
-      one.arm_force = 0.0;
-      one.penetration = 0.0;
-      one.reachable = -1.0;
-    }
+    for (auto& one : state.element) one.rupture();
   }
   /// Force along the depth without c U; the books of W are those of contact_step(), at moduli that change.
   double step_in_depth(State& state, double travel, double depth_before, double period_s) const noexcept {

@@ -75,6 +75,13 @@ struct Kelvin {
       visit("shortest_s", shortest_s);
       visit("started", started);
     }
+
+    /// What is behind a rupture no longer strains the element: it begins anew, of what the rupture leaves.
+    void rupture() noexcept {
+      arm_force = T(0);
+      penetration = 0.0;
+      reachable = T(-1);
+    }
   };
 
   static std::vector<ParameterInfo> parameters(const Options&) {
