@@ -8,7 +8,6 @@
 #include <stdexcept>
 
 #include "kerf/fitting/checked_recordings.h"
-#include "least_squares.h"
 #include "samples.h"
 #include "training/held_out.h"
 #include "training/trained_memory.h"
@@ -272,28 +271,6 @@ double rms_of(const Series& series) {
     count += 1.0;
   }
   return std::sqrt(squares / count);
-}
-
-double line_rmse(const Series& series) {
-  const auto counts = [&](std::size_t i) { return series.counts.empty() || series.counts[i] != 0; };
-  double n = 0.0;
-  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
-  Eigen::Vector2d right = Eigen::Vector2d::Zero();
-  for (std::size_t i = 0; i < series.force.size(); ++i) {
-    if (!counts(i)) continue;
-    n += 1.0;
-    const Eigen::Vector2d row(1.0, series.penetration[i]);
-    normal += row * row.transpose();
-    right += row * series.force[i];
-  }
-  const Eigen::Vector2d line = solve_normal(normal, right);
-  double squares = 0.0;
-  for (std::size_t i = 0; i < series.force.size(); ++i) {
-    if (!counts(i)) continue;
-    const double error = line[0] + line[1] * series.penetration[i] - series.force[i];
-    squares += error * error;
-  }
-  return std::sqrt(squares / n);
 }
 
 }  // namespace kerf::fitting

@@ -1,7 +1,9 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <random>
+#include <span>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -211,6 +213,47 @@ TEST(Fit, IsJudgedAsItIsRendered) {
   const FitResult fitted = fit("kelvin", strokes.series(true));
   EXPECT_THAT(choose_simplest(std::vector{fitted}, strokes.series(true), {}).why,
               HasSubstr("error on held-out data ("));
+}
+
+/// Strokes of one cycle each, of the forces of one stroke.
+struct OneStrokeEach {
+  Cycles strokes{0, 0.0, 0.0, 0.0, spring};
+
+  explicit OneStrokeEach(const std::vector<std::function<double(double)>>& forces) {
+    constexpr std::size_t rows = 200;
+    for (const auto& force : forces) {
+      for (std::size_t i = 0; i < rows; ++i) {
+        const double phase = 2.0 * M_PI * static_cast<double>(i) / rows;
+        strokes.time_s.push_back(1e-3 * static_cast<double>(strokes.time_s.size()));
+        strokes.penetration.push_back(0.2 * (1.0 - std::cos(phase)));
+        strokes.velocity.push_back(40.0 * M_PI / rows * std::sin(phase));
+        strokes.force.push_back(force(strokes.penetration.back()));
+        strokes.cycle.push_back(static_cast<std::uint32_t>(strokes.time_s.size() - 1) / rows + 1);
+      }
+    }
+  }
+
+  [[nodiscard]] double held_out(std::size_t folds, double test_share = 0.0) const {
+    const Series series = strokes.series();
+    return held_out_line_rmse(
+        CheckedRecordings(std::span(&series, 1), {.folds = folds, .test_share = test_share}));
+  }
+};
+
+// numpy.polyfit on the other strokes, numpy.polyval on each.
+TEST(Line, HeldOutIsNumPysOfTheOtherCycles) {
+  const auto first = [](double x) { return 10.0 * x + 30.0 * x * x; };
+  const auto second = [](double x) { return 12.0 * x + 20.0 * x * x + 0.1; };
+  const auto third = [](double x) { return 11.0 * x - 0.05; };
+  EXPECT_NEAR(OneStrokeEach({first, second}).held_out(2), 0.4690415759823427, 1e-12);
+  const OneStrokeEach three({first, second, third});
+  EXPECT_NEAR(three.held_out(3), 1.5493278112351414, 1e-12);
+  EXPECT_NEAR(three.held_out(2, 0.3), 0.4690415759823427, 1e-12)
+      << "what no fit sees, a line does not either";
+}
+
+TEST(Line, WithoutFoldsIsNotHeldOut) {
+  EXPECT_TRUE(std::isnan(OneStrokeEach({[](double x) { return x; }}).held_out(0)));
 }
 
 }  // namespace

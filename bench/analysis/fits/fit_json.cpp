@@ -224,6 +224,7 @@ json fits_as_json(const RecordingFit& fit) {
            {"force_unit", fit.settings.force_unit},
            {"settings", settings_as_json(fit)},
            {"line_rmse", fit.line_rmse_n},
+           {"line_cv_rmse", json_number(fit.line_cv_rmse_n)},
            {"jnd", fit.jnd_n},
            {"fits", fits},
            {"refused", refusals},

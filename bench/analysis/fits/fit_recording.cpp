@@ -341,6 +341,7 @@ RecordingFit fit_recordings(std::span<const FitSource> all, const FitRecordingOp
   if (fit.laws.empty()) return fit;
   const fitting::Series pool = fitted_view(sources.pool());
   fit.line_rmse_n = fitting::line_rmse(pool);
+  fit.line_cv_rmse_n = fitting::held_out_line_rmse(*checked);
   fit.jnd_n = options.fit.jnd.at(fitting::rms_of(pool));
   if (options.floor) {
     fit.floor = floor.get();

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -78,7 +79,8 @@ struct Refusal {
 struct RecordingFit {
   std::vector<FittedRecording> recordings;
   double line_rmse_n = 0.0;  ///< of a straight line of force over penetration
-  double jnd_n = 0.0;        ///< at the root mean square force
+  double line_cv_rmse_n = std::numeric_limits<double>::quiet_NaN();  ///< of one on held-out cycles; NaN: none
+  double jnd_n = 0.0;                                                ///< at the root mean square force
   std::vector<FittedLaw> laws;
   std::vector<Refusal> refusals;
   fitting::Choice choice;

@@ -67,7 +67,8 @@ std::string comparison_table(const json& fits, const std::string& unit) {
                     fit.at("converged").get<bool>() ? "yes" : "no"});
     if (tested) rows.back().insert(rows.back().begin() + 10, number_text(fit.at("test_rmse")));
   }
-  rows.push_back({"straight line", "2", number_text(fits.at("line_rmse"))});
+  rows.push_back({"straight line", "2", number_text(fits.at("line_rmse")), "", "", "", "", "",
+                  number_text(fits.value("line_cv_rmse", json(nullptr)))});
   return html_table(rows);
 }
 
@@ -108,6 +109,10 @@ Chart comparison_chart(const json& fits, const std::string& unit) {
   chart.y_ticks.push_back({.at = 0.0, .name = "straight line"});
   all.x.push_back(fits.at("line_rmse").get<double>());
   all.y.push_back(0.0);
+  if (fits.contains("line_cv_rmse") && fits.at("line_cv_rmse").is_number()) {
+    held_out.x.push_back(fits.at("line_cv_rmse").get<double>());
+    held_out.y.push_back(0.0);
+  }
   for (Curve* curve : {&all, &held_out, &rendered, &tested}) {
     if (!curve->x.empty()) chart.curves.push_back(std::move(*curve));
   }

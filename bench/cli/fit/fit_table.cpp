@@ -25,7 +25,8 @@ void say_comparison(const RecordingFit& fit, Context& context) {
                             tested ? fmt::format(" {:>9}", number_or_dash(result.test_rmse)) : "",
                             100.0 * result.jnd_fraction, result.converged ? "yes" : "NO"));
   }
-  context.say(fmt::format("  {:17} {:4} {:9.4f}", "straight line", 2, fit.line_rmse_n));
+  context.say(fmt::format("  {:17} {:4} {:9.4f} {:>9} {:>7} {:>9}", "straight line", 2, fit.line_rmse_n, "",
+                          "", number_or_dash(fit.line_cv_rmse_n)));
 }
 
 std::string interval_of(const fitting::Estimate& estimate) {

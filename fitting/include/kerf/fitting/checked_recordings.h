@@ -32,4 +32,8 @@ class CheckedRecordings {
                             const FitOptions& options);
 [[nodiscard]] Floor floor_of(const CheckedRecordings& recordings);
 
+/// Root mean square error of a straight line of force over penetration on the folds that it was not fitted
+/// to, as laws are held out (every sample counts alike) [N]; NaN for fewer than two folds.
+[[nodiscard]] double held_out_line_rmse(const CheckedRecordings& recordings);
+
 }  // namespace kerf::fitting

@@ -40,8 +40,8 @@ class FitOptions : public testing::Test {
 
 TEST_F(FitOptions, GiveTheWholeJson) {
   const json all = result({punch("a.h5"), "--models", "kelvin", "--test-share", "0.25", "--profile"});
-  for (const auto* key : {"recording", "recordings", "samples", "settings", "line_rmse", "jnd", "fits",
-                          "refused", "choice", "warnings"}) {
+  for (const auto* key : {"recording", "recordings", "samples", "settings", "line_rmse", "line_cv_rmse",
+                          "jnd", "fits", "refused", "choice", "warnings"}) {
     EXPECT_TRUE(all.contains(key)) << key;
   }
   const json& kelvin = all.at("fits").at(0);

@@ -65,6 +65,8 @@ async function expectNumbersOfTheSentence(page, written) {
   const line = page.locator("table.fits tfoot tr", { hasText: "straight line" });
   const error = line.locator("> *").nth(heads.indexOf("error [N]"));
   expectEqual(Number(await error.getAttribute("data-value")), written.line_rmse, "the error of a straight line");
+  const lineHeld = line.locator("> *").nth(heads.indexOf("held out [N]"));
+  expectEqual(Number(await lineHeld.getAttribute("data-value")), written.line_cv_rmse, "a straight line held out");
   const floor = page.locator("table.fits tfoot tr", { hasText: "floor" });
   const held = floor.locator("> *").nth(heads.indexOf("held out [N]"));
   expectEqual(Number(await held.getAttribute("data-value")), written.floor.velocity, "the floor");

@@ -48,6 +48,7 @@ export interface FitFile {
   samples: number;
   settings: { folds: number; confidence: number };
   line_rmse: number;
+  line_cv_rmse?: number | null; // missing in files of earlier versions
   floor?: { position: number | null; velocity: number | null; noise: number }; // what nothing errs by less than
   jnd: number;
   fits: LawFit[];

@@ -34,9 +34,9 @@ function cell(text: string): HTMLTableCellElement {
 }
 
 /** What laws are held against: a straight line, which any law has to beat, and what hardly any can. */
-function references({ line_rmse, floor, jnd }: FitFile): HTMLTableRowElement[] {
+function references({ line_rmse, line_cv_rmse, floor, jnd }: FitFile): HTMLTableRowElement[] {
   const row = (name: string, free: number | null, errors: readonly (number | null)[], remark: string) => {
-    const error = errors.find((it) => it !== null) ?? null;
+    const error = errors[1] ?? errors[0] ?? null; // where it was held out, as that of a law
     const jnds = error === null ? null : error / jnd;
     return element(
       "tr",
@@ -51,7 +51,7 @@ function references({ line_rmse, floor, jnd }: FitFile): HTMLTableRowElement[] {
     );
   };
   return [
-    row("straight line", 2, [line_rmse, null, null], "of force over penetration"),
+    row("straight line", 2, [line_rmse, line_cv_rmse ?? null, null], "of force over penetration"),
     floor?.velocity == null ? null : row("floor", null, [null, floor.velocity, null], "best map of position and speed"),
   ].filter((it) => it !== null);
 }

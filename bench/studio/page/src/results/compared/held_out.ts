@@ -30,17 +30,18 @@ export function heldOutFigure(file: FitFile, order: readonly LawFit[]): Figure {
     marks("held out, as rendered", (it) => it.cv_rmse_rendered, { colour: "vermillion" }),
     marks("on the last share, which no fit saw", (it) => it.test_rmse, { colour: "green" }),
   ].filter((it) => it.y.some((value) => value !== null));
+  const line = file.line_cv_rmse ?? file.line_rmse;
   const floor = file.floor?.velocity ?? file.floor?.position;
   return figureOf("law", `error, root mean square [${unit}]`, {
     curves: [bars, ...all],
     horizontal: [
       { at: file.jnd, label: "JND", label_after: false },
-      { at: file.line_rmse, label: "a straight line", label_after: false },
+      { at: line, label: "a straight line", label_after: false },
       ...(floor == null ? [] : [{ at: floor, label: "the best curve of position and speed", label_after: false }]),
     ],
     x_ticks: order.map((it, i) => ({ at: i + 1, name: it.model })),
     x_range: [0.5, order.length + 0.5],
-    y_range: [0, 1.1 * Math.max(file.jnd, file.line_rmse, ...all.flatMap((it) => it.y.map((value) => value ?? 0)))],
+    y_range: [0, 1.1 * Math.max(file.jnd, line, ...all.flatMap((it) => it.y.map((value) => value ?? 0)))],
     notes: [`Errors of ${file.settings.folds || "no"} folds.`],
   });
 }
