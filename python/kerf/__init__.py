@@ -34,10 +34,10 @@ _core.look_for_helpers_in(_helpers())
 
 from .fits import Choice, Estimate, FittedLaw, Fits, fit
 from .laws import Law, LawAxis, Parameter, Replay, State, models
-from .recordings import FLAGS, Axis, CycleFlag, Cycles, Event, Phase, Recording, Violation, validate
+from .recordings import FLAGS, Axis, CycleChange, CycleFlag, Cycles, Event, Phase, Recording, Violation, validate
 from .results import Result, load
 
 __version__ = _core.version
 
-__all__ = ["FLAGS", "Axis", "Choice", "CycleFlag", "Cycles", "Estimate", "Event", "Fits", "FittedLaw", "FormatError", "Law", "LawAxis",
+__all__ = ["FLAGS", "Axis", "Choice", "CycleChange", "CycleFlag", "Cycles", "Estimate", "Event", "Fits", "FittedLaw", "FormatError", "Law", "LawAxis",
            "Parameter", "Phase", "Recording", "Replay", "Result", "State", "Violation", "fit", "load", "models", "validate"]

@@ -56,6 +56,20 @@ class CycleFlag(NamedTuple):
     reason: str
 
 
+class CycleChange(NamedTuple):
+    """One change of the cycles by hand. Rows and cycles are numbered as they were when it was saved."""
+
+    edit: int  #: from 1; changes that were saved together have one number
+    cycle: int  #: 0: of all of them
+    phase: str  #: whose boundary it is, as in Phase; "": of none
+    row_before: int | None  #: where the boundary was; None: there was none
+    row_after: int | None  #: where it is since; None: there is none
+    time: str  #: when it was saved: ISO 8601, UTC
+    author: str
+    kind: str  #: "found", "begin", "end", "split", "merged", "divided", "left_out", "taken", "as_found"
+    text: str  #: in a sentence, with times and reasons
+
+
 class Cycles(NamedTuple):
     """What `kerf segment` found. Curves are over `grid`; NaN where a cycle did not reach."""
 
@@ -69,6 +83,9 @@ class Cycles(NamedTuple):
     opening: NDArray[np.float64]  #: (cycles, G)
     closing_mean: NDArray[np.float64]  #: (G,)
     opening_mean: NDArray[np.float64]  #: (G,)
+
+
+_PHASES = ("", "opening", "open_to_close", "closing", "close_to_open")
 
 
 class Violation(NamedTuple):
@@ -144,8 +161,7 @@ class Recording:
         found = self._about["cycles"]
         if found is None:
             return None
-        names = ("", "opening", "open_to_close", "closing", "close_to_open")
-        phases = tuple(Phase(cycle, names[phase], begin, end) for cycle, phase, begin, end in found["phases"])
+        phases = tuple(Phase(cycle, _PHASES[phase], begin, end) for cycle, phase, begin, end in found["phases"])
         values: dict[str, Any] = {**found, "phases": phases}
         return Cycles(**values)
 
@@ -153,6 +169,14 @@ class Recording:
     def cycle_flags(self) -> tuple[CycleFlag, ...]:
         """What is wrong with the cycles, as `kerf segment` found it and people said since."""
         return tuple(CycleFlag(*flag) for flag in self._about["cycle_flags"])
+
+    @property
+    def cycle_edits(self) -> tuple[CycleChange, ...]:
+        """What people changed of the cycles by hand, the oldest first: in the studio, or by `kerf segment`."""
+        return tuple(
+            CycleChange(edit, cycle, _PHASES[phase], None if before < 0 else before, None if after < 0 else after, *rest)
+            for edit, cycle, phase, before, after, *rest in self._about["cycle_edits"]
+        )
 
     @property
     def period(self) -> float:

@@ -237,6 +237,11 @@ py::dict about_of(HeldRecording& recording) {
     for (const schema::CycleFlag& one : about.cycle_flags->flags)
       cycle_flags.append(py::make_tuple(one.cycle, text_of(one.fault), text_of(one.reason)));
   }
+  py::list cycle_edits;
+  for (const schema::CycleChange& one : about.cycle_edits)
+    cycle_edits.append(py::make_tuple(one.edit, one.cycle, static_cast<int>(one.phase), one.row_before,
+                                      one.row_after, text_of(one.time), text_of(one.author),
+                                      text_of(one.kind), text_of(one.text)));
   py::dict all;
   all["rows"] = use.file().rows();
   all["is_live"] = use.file().is_live();
@@ -247,6 +252,7 @@ py::dict about_of(HeldRecording& recording) {
   all["columns"] = columns;
   all["cycles"] = cycles_of(about);
   all["cycle_flags"] = cycle_flags;
+  all["cycle_edits"] = cycle_edits;
   return all;
 }
 

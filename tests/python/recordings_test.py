@@ -154,6 +154,19 @@ class Recordings(InFolder):
         self.assertEqual((cycles.axis, cycles.closing.shape), ("position", (7, len(cycles.grid))))
         self.assertEqual({phase.phase for phase in cycles.phases} - {"opening", "open_to_close", "closing", "close_to_open"}, set())
         self.assertTrue(kerf.Recording(self.punch).cycle_flags[0].reason)
+        self.assertEqual(kerf.Recording(self.punch).cycle_edits, ())
+
+    def test_tell_who_changed_their_cycles(self):
+        edited = self.folder / "edited.h5"
+        edited.write_bytes(self.punch.read_bytes())
+        run("segment", edited, "--merge", 2, "--by", "Ada")
+        before, after = kerf.Recording(self.punch), kerf.Recording(edited)
+        self.assertEqual(len(after.cycles.closing), len(before.cycles.closing) - 1)
+        (change,) = after.cycle_edits
+        self.assertEqual((change.edit, change.cycle, change.kind), (1, 2, "merged"))
+        self.assertTrue(change.author == "Ada" and change.text and change.time.endswith("Z"), change)
+        third = [phase for phase in before.cycles.phases if phase.cycle == 3]
+        self.assertEqual((change.row_before, change.row_after), (third[0].begin, None))
 
     def test_are_refused_in_one_line(self):
         text = self.folder / "text.h5"
