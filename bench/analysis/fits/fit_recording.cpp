@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 #include <system_error>
+#include <variant>
 
 #include <fmt/core.h>
 
@@ -20,6 +21,7 @@
 #include "recordings/provenance.h"
 #include "segment/cycle_edit.h"
 #include "signal/quantiles.h"
+#include "threads/for_each_index.h"
 
 namespace kerf::bench {
 namespace {
@@ -101,26 +103,36 @@ FittedLaw finished(fitting::FitResult result, const Sources& sources) {
   return fitted;
 }
 
-/// How far the fit of one law is, beside those before it; at the end of its scope all of it is done.
+/// How far the fit of one law is; at the end of its scope all of it is done.
 class LawProgress {
  public:
-  LawProgress(std::atomic<std::size_t>* done, std::size_t law, std::size_t parts)
-      : done_(done), before_(law * parts), parts_(parts) {}
+  LawProgress(std::atomic<std::size_t>* done, std::size_t parts) : done_(done), left_(parts) {}
   LawProgress(const LawProgress&) = delete;
   LawProgress& operator=(const LawProgress&) = delete;
-  ~LawProgress() {
-    if (done_ != nullptr) *done_ = before_ + parts_;
-  }
+  ~LawProgress() { add(left_); }
   /// By whichever thread.
   void part_done() {
-    if (done_ != nullptr) ++*done_;
+    std::size_t left = left_;
+    while (left > 0 && !left_.compare_exchange_weak(left, left - 1)) continue;
+    if (left > 0) add(1);
   }
 
  private:
+  void add(std::size_t parts) {
+    if (done_ != nullptr) *done_ += parts;
+  }
+
   std::atomic<std::size_t>* done_;
-  std::size_t before_;
-  std::size_t parts_;
+  std::atomic<std::size_t> left_;
 };
+
+/// Of a law: its fit, or why there is none; nothing where it was not asked for by name and is of another
+/// axis.
+using LawOutcome = std::variant<std::monostate, FittedLaw, Refusal>;
+
+bool asked_for(const std::string& model, const FitRecordingOptions& options) {
+  return options.models.empty() || std::ranges::find(options.models, model) != options.models.end();
+}
 
 bool fits_axis(const std::string& model, const schema::Axis& axis) {
   return units_fit(models::law_info(model), axis.position_unit, axis.force_unit);
@@ -306,26 +318,25 @@ RecordingFit fit_recordings(std::span<const FitSource> all, const FitRecordingOp
   fit.loop_rate_hz = options.loop_rate_hz;
   fit.settings.force_unit = axis.force_unit;
   const Sources sources = sources_of(all, fit);
-  const auto named = [&](const std::string& model) {
-    return options.models.empty() ||
-           std::find(options.models.begin(), options.models.end(), model) != options.models.end();
-  };
+  const bool beside = options.floor && options.fit.threads > 1;
   std::optional<fitting::CheckedRecordings> checked;
   std::future<fitting::Floor> floor;
-  for (std::size_t k = 0; k < models.size(); ++k) {
-    const std::string& model = models[k];
+  std::string why_not;
+  try {
+    checked.emplace(sources.views(), fit.settings);
+    floor = std::async(beside ? std::launch::async : std::launch::deferred,
+                       [&checked] { return fitting::floor_of(*checked); });
+  } catch (const std::invalid_argument& error) {
+    why_not = error.what();
+  }
+  const auto fit_law = [&](const std::string& model) -> LawOutcome {
     if (options.stop != nullptr && *options.stop)
       throw std::system_error(std::make_error_code(std::errc::interrupted), "not all laws were fitted");
-    LawProgress progress(options.done, k, fitting::parts_of_a_fit(options.fit));
-    if (!named(model) && !fits_axis(model, axis)) continue;
+    LawProgress progress(options.done, fitting::parts_of_a_fit(options.fit));
+    if (!asked_for(model, options) && !fits_axis(model, axis)) return {};
     try {
       check_units(model, axis);
-      if (!checked) {
-        checked.emplace(sources.views(), fit.settings);
-        const bool beside = options.floor && options.fit.threads > 1;
-        floor = std::async(beside ? std::launch::async : std::launch::deferred,
-                           [&checked] { return fitting::floor_of(*checked); });
-      }
+      if (!checked) throw std::invalid_argument(why_not);
       fitting::FitOptions of_law = options_for(model, options, fit.settings, sources);
       of_law.part_done = [&] {
         progress.part_done();
@@ -333,10 +344,19 @@ RecordingFit fit_recordings(std::span<const FitSource> all, const FitRecordingOp
       };
       fitting::FitResult result = fitting::fit(model, *checked, of_law);
       if (result.parameters.empty()) throw std::invalid_argument(result.message);
-      fit.laws.push_back(finished(std::move(result), sources));
+      return finished(std::move(result), sources);
     } catch (const std::invalid_argument& error) {
-      fit.refusals.push_back({.model = model, .why = error.what()});
+      return Refusal{.model = model, .why = error.what()};
     }
+  };
+  // Beside each other while there is room: each takes memory for every sample.
+  constexpr std::size_t most_samples_beside = 1'000'000;
+  std::vector<LawOutcome> found(models.size());
+  for_each_index(models.size(), fit.samples() <= most_samples_beside ? options.fit.threads : 1,
+                 [&](std::size_t i) { found[i] = fit_law(models[i]); });
+  for (LawOutcome& one : found) {
+    if (auto* law = std::get_if<FittedLaw>(&one)) fit.laws.push_back(std::move(*law));
+    if (auto* refusal = std::get_if<Refusal>(&one)) fit.refusals.push_back(std::move(*refusal));
   }
   if (fit.laws.empty()) return fit;
   const fitting::Series pool = fitted_view(sources.pool());
