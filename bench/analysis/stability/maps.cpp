@@ -109,6 +109,7 @@ WallMap wall_map(const SampledDevice& device, const WallTrial& trial, const Grid
   const WallSimulation tried(device);
   const WallSimulation linear_walls(linear_device);
   const SampledSystem system(device);
+  const PassiveWalls passive(device);
   const bool is_linear = device.is_linear() && trial.push_n == 0.0;
   map.boundaries.resize(grid.second.size());
   if (options.with_cells) map.cells.resize(columns * grid.second.size());
@@ -123,7 +124,7 @@ WallMap wall_map(const SampledDevice& device, const WallTrial& trial, const Grid
         .simulated_linear = simulated_linear,
         .eigenvalues = eigenvalue_boundary(system, damping, softest, stiffest),
         .colgate_schenkel = colgate_schenkel(device, damping),
-        .passive = passive_stiffness(device, damping)};
+        .passive = passive.stiffness(damping)};
     if (!options.with_cells) return;
     std::vector<Wall> walls;
     for (const double stiffness : grid.first) walls.push_back({stiffness, damping});

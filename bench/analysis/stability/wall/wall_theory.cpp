@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <numbers>
 
 #include <Eigen/Eigenvalues>
@@ -28,43 +29,39 @@ double friction_needed(const SampledDevice& device, double angle, std::complex<d
   return 0.5 * device.period_s / (1.0 - std::cos(angle)) * (held * wall).real();
 }
 
-namespace {
-
-/// The two parts of the theorem at a frequency: what a unit of K and of B need of the device's friction.
-struct Needs {
-  double of_stiffness;
-  double of_damping;
-};
-
-Needs needs_at(const SampledDevice& device, double angle) {
+PassiveWalls::PassiveWalls(const SampledDevice& device) : viscous_n_s_per_m_(device.viscous_n_s_per_m) {
+  constexpr int frequencies = 2000;
   using Complex = std::complex<double>;
   const double gain = device.velocity_gain();
-  const Complex back = std::polar(1.0, -angle);
-  const Complex damper = gain * (1.0 - back) / (device.period_s * (1.0 - (1.0 - gain) * back));
-  return {friction_needed(device, angle, 1.0), friction_needed(device, angle, damper)};
+  for (int i = 1; i <= frequencies; ++i) {
+    const double angle = std::numbers::pi * i / frequencies;  // w T
+    const Complex back = std::polar(1.0, -angle);
+    const Complex damper = gain * (1.0 - back) / (device.period_s * (1.0 - (1.0 - gain) * back));
+    needs_.push_back({friction_needed(device, angle, 1.0), friction_needed(device, angle, damper)});
+  }
 }
 
-constexpr int frequencies = 2000;
-double angle_of(int i) { return std::numbers::pi * i / frequencies; }  // w T
-
-}  // namespace
-
-double passive_stiffness(const SampledDevice& device, double wall_damping) {
+double PassiveWalls::stiffness(double wall_damping) const {
   double stiffest = std::numeric_limits<double>::infinity();
-  for (int i = 1; i <= frequencies; ++i) {
-    const Needs needs = needs_at(device, angle_of(i));
-    const double left = device.viscous_n_s_per_m - wall_damping * needs.of_damping;
+  for (const Needs& needs : needs_) {
+    const double left = viscous_n_s_per_m_ - wall_damping * needs.of_damping;
     if (left <= 0.0) return 0.0;
     if (needs.of_stiffness > 0.0) stiffest = std::min(stiffest, left / needs.of_stiffness);
   }
   return stiffest;
 }
 
-double worst_of_damping(const SampledDevice& device) {
+double PassiveWalls::worst_of_damping() const {
   double most = 0.0;
-  for (int i = 1; i <= frequencies; ++i) most = std::max(most, needs_at(device, angle_of(i)).of_damping);
+  for (const Needs& needs : needs_) most = std::max(most, needs.of_damping);
   return most;
 }
+
+double passive_stiffness(const SampledDevice& device, double wall_damping) {
+  return PassiveWalls(device).stiffness(wall_damping);
+}
+
+double worst_of_damping(const SampledDevice& device) { return PassiveWalls(device).worst_of_damping(); }
 
 namespace {
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <complex>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -30,13 +31,34 @@ struct Wall {
 ///     b > T / (2 (1 - cos wT)) Re{(1 - exp(-jwT)) exp(-jwTd) H(exp(jwT))}   for 0 <= w <= pi / T
 [[nodiscard]] double friction_needed(const SampledDevice& device, double angle, std::complex<double> wall);
 
-/// By that theorem, of a wall with the velocity filter:
+/// That theorem of walls with the velocity filter on one device:
 ///
 ///     H = K + B g (1 - z^-1) / (T (1 - (1 - g) z^-1)),   g the filter's gain
-[[nodiscard]] double passive_stiffness(const SampledDevice& device, double wall_damping);
+///
+/// What K and B need at every frequency is found once for all of them.
+class PassiveWalls {
+ public:
+  explicit PassiveWalls(const SampledDevice& device);
 
-/// How much of the device's friction a damper needs to be passive, by that theorem: 1 for the plain
-/// difference, less with a filter, whose lag in turn makes it a spring.
+  /// Stiffest wall of a damping.
+  [[nodiscard]] double stiffness(double wall_damping) const;
+  /// How much of the device's friction a damper needs to be passive: 1 for the plain difference, less with a
+  /// filter, whose lag in turn makes it a spring.
+  [[nodiscard]] double worst_of_damping() const;
+
+ private:
+  /// What a unit of K and of B need of the device's friction at a frequency.
+  struct Needs {
+    double of_stiffness;
+    double of_damping;
+  };
+
+  double viscous_n_s_per_m_;
+  std::vector<Needs> needs_;
+};
+
+/// Of one wall alone.
+[[nodiscard]] double passive_stiffness(const SampledDevice& device, double wall_damping);
 [[nodiscard]] double worst_of_damping(const SampledDevice& device);
 
 /// Walls on one device as a linear system from tick to tick: the wall pulls as it pushes; encoder steps and

@@ -190,11 +190,12 @@ std::vector<ZWidthTheory> z_width_theory(const UncertainModel& model, const Wall
                                          std::size_t draws, std::size_t threads) {
   std::vector<ZWidthTheory> theory;
   const std::vector<double> exact = boundaries_of(model.device, options);
+  const PassiveWalls passive(model.device);
   for (std::size_t i = 0; i < exact.size(); ++i) {
     const double damping = options.damping_n_s_per_m[i];
     theory.push_back({.damping_n_s_per_m = damping,
                       .boundary = exact[i],
-                      .passive = passive_stiffness(model.device, damping),
+                      .passive = passive.stiffness(damping),
                       .band = {}});
   }
   if (model.is_exact() || draws == 0) return theory;
