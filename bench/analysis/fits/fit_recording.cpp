@@ -349,11 +349,14 @@ RecordingFit fit_recordings(std::span<const FitSource> all, const FitRecordingOp
       return Refusal{.model = model, .why = error.what()};
     }
   };
-  // Beside each other while there is room: each takes memory for every sample.
+  // Beside each other while there is room: each takes memory for every sample. The last of them take longest.
   constexpr std::size_t most_samples_beside = 1'000'000;
+  const std::size_t beside_each_other = fit.samples() <= most_samples_beside ? options.fit.threads : 1;
   std::vector<LawOutcome> found(models.size());
-  for_each_index(models.size(), fit.samples() <= most_samples_beside ? options.fit.threads : 1,
-                 [&](std::size_t i) { found[i] = fit_law(models[i]); });
+  for_each_index(models.size(), beside_each_other, [&](std::size_t i) {
+    const std::size_t law = beside_each_other > 1 ? models.size() - 1 - i : i;
+    found[law] = fit_law(models[law]);
+  });
   for (LawOutcome& one : found) {
     if (auto* law = std::get_if<FittedLaw>(&one)) fit.laws.push_back(std::move(*law));
     if (auto* refusal = std::get_if<Refusal>(&one)) fit.refusals.push_back(std::move(*refusal));
