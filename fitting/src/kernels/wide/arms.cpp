@@ -26,26 +26,16 @@ double gain_slope_of(double q, double loss) {
   return sum;
 }
 
-ArmTick tick_over(double period_s, double time_s) {
+FourRows four_rows_of(double period_s, double time_s) {
   const double q = period_s / time_s;
-  ArmTick tick{.period_s = period_s};
-  for (std::size_t k = 0; k < 4; ++k) tick.loss[k] = -std::expm1(-q * static_cast<double>(k + 1));
-  tick.once = kept(std::exp(-q));
-  tick.twice = kept(tick.once * tick.once);
-  tick.gain = tick.loss[0] / q;
-  tick.fading = kept(q * tick.once);
-  tick.gain_slope = gain_slope_of(q, tick.loss[0]);
-  return tick;
-}
-
-/// Kept by multiplicative hashing: periods differ in their last bits too.
-const ArmTick& tick_of(Arm& arm, double period_s) noexcept {
-  constexpr int bits = 5;
-  static_assert(std::tuple_size_v<decltype(Arm::ticks)> == std::size_t{1} << bits);
-  const auto hash = std::bit_cast<std::uint64_t>(period_s) * 0x9E3779B97F4A7C15U;
-  ArmTick& tick = arm.ticks[static_cast<std::size_t>(hash >> (64 - bits))];
-  if (tick.period_s != period_s) tick = tick_over(period_s, arm.time_s);
-  return tick;
+  FourRows rows{.period_s = period_s};
+  for (std::size_t k = 0; k < 4; ++k) rows.loss[k] = -std::expm1(-q * static_cast<double>(k + 1));
+  rows.once = kept(std::exp(-q));
+  rows.twice = kept(rows.once * rows.once);
+  rows.gain = rows.loss[0] / q;
+  rows.fading = kept(q * rows.once);
+  rows.gain_slope = gain_slope_of(q, rows.loss[0]);
+  return rows;
 }
 
 /// y[n] = a y[n-1] + u[n] over four rows from rest, and what is left there of what was before.
@@ -57,7 +47,7 @@ const ArmTick& tick_of(Arm& arm, double period_s) noexcept {
   return four + (held - loss * held);
 }
 
-KERF_WIDE_PACKETS void run_evenly(Arm& arm, const ArmTick& tick, const double* travel, std::size_t rows,
+KERF_WIDE_PACKETS void run_evenly(Arm& arm, const FourRows& tick, const double* travel, std::size_t rows,
                                   double* g, double* h) {
   const Pack loss = load(tick.loss.data());
   const Pack once = all(tick.once);
@@ -78,18 +68,47 @@ KERF_WIDE_PACKETS void run_evenly(Arm& arm, const ArmTick& tick, const double* t
   }
 }
 
-void run_unevenly(Arm& arm, const Block& block, const double* travel, double* g, double* h) {
-  const ArmTick* tick = &tick_of(arm, block.period_s[0]);
-  double now_g = arm.g;
-  double now_h = arm.h;
-  for (std::size_t i = 0; i < block.padded; ++i) {
-    if (block.period_s[i] != tick->period_s) tick = &tick_of(arm, block.period_s[i]);
-    const double before = now_g;
-    now_g = kept(before + (tick->gain * travel[i] - tick->loss[0] * before));
-    now_h = kept(now_h + (tick->fading * before + tick->gain_slope * travel[i] - tick->loss[0] * now_h));
-    g[i] = now_g;
-    h[i] = now_h;
+Pack kept(const Pack& value) { return where((value >= negligible) | (value <= -negligible), value); }
+
+/// `Packets` of arms, row by row.
+template <std::size_t Packets>
+[[gnu::always_inline]] inline void run_together(Arms& arms, std::span<Arm> all, Block& block,
+                                                const double* travel) {
+  const std::size_t count = all.size();
+  std::array<double, Arms::places> g{}, h{};
+  for (std::size_t k = 0; k < count; ++k) {
+    g[k] = all[k].g;
+    h[k] = all[k].h;
   }
+  std::array<Pack, Packets> now_g, now_h;
+  for (std::size_t p = 0; p < Packets; ++p) {
+    now_g[p] = load(&g[p * lanes]);
+    now_h[p] = load(&h[p * lanes]);
+  }
+  const Arms::Tick* tick = &arms.tick_of(block.period_s[0]);
+  for (std::size_t i = 0; i < block.padded; ++i) {
+    if (block.period_s[i] != tick->period_s) tick = &arms.tick_of(block.period_s[i]);
+    for (std::size_t p = 0; p < Packets; ++p) {
+      const Pack loss = load(&tick->loss[p * lanes]);
+      const Pack before = now_g[p];
+      now_g[p] = kept(before + (load(&tick->gain[p * lanes]) * travel[i] - loss * before));
+      now_h[p] = kept(now_h[p] + (load(&tick->fading[p * lanes]) * before +
+                                  load(&tick->gain_slope[p * lanes]) * travel[i] - loss * now_h[p]));
+      store(&g[p * lanes], now_g[p]);
+      store(&h[p * lanes], now_h[p]);
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      block.column[1 + 2 * k][i] = g[k];
+      block.column[2 + 2 * k][i] = h[k];
+    }
+  }
+}
+
+KERF_WIDE_PACKETS void run_four(Arms& arms, std::span<Arm> all, Block& block, const double* travel) {
+  run_together<1>(arms, all, block, travel);
+}
+KERF_WIDE_PACKETS void run_eight(Arms& arms, std::span<Arm> all, Block& block, const double* travel) {
+  run_together<2>(arms, all, block, travel);
 }
 
 KERF_WIDE_PACKETS void travel_of(Block& block, double before, bool bilateral, double* travel) {
@@ -137,24 +156,56 @@ Arms::Arms(double spring, std::span<const double> stiffness, std::span<const dou
   }
 }
 
+/// Kept by multiplicative hashing with places beside: periods differ in their last bits too.
+const Arms::Tick& Arms::tick_of(double period_s) noexcept {
+  constexpr int bits = 7;
+  constexpr std::size_t beside = 4;
+  static_assert(std::tuple_size_v<decltype(ticks_)> == std::size_t{1} << bits);
+  const auto hash = std::bit_cast<std::uint64_t>(period_s) * 0x9E3779B97F4A7C15U;
+  const auto first = static_cast<std::size_t>(hash >> (64 - bits));
+  Tick* free = &ticks_[first];
+  for (std::size_t k = 0; k < beside; ++k) {
+    Tick& tick = ticks_[(first + k) % ticks_.size()];
+    if (tick.period_s == period_s) return tick;
+    if (tick.period_s == 0.0) {
+      free = &tick;
+      break;
+    }
+  }
+  free->period_s = period_s;
+  for (std::size_t k = 0; k < count_; ++k) {
+    const double q = period_s / arms_[k].time_s;
+    const double loss = -std::expm1(-q);
+    free->loss[k] = loss;
+    free->gain[k] = loss / q;
+    free->fading[k] = kept(q * kept(std::exp(-q)));
+    free->gain_slope[k] = gain_slope_of(q, loss);
+  }
+  return *free;
+}
+
 void Arms::fill(Block& block) noexcept {
   alignas(64) Block::Column travel;
   if (!started_) before_ = bilateral_ || block.penetration[0] > 0.0 ? block.penetration[0] : 0.0;
   started_ = true;
   travel_of(block, before_, bilateral_, travel.data());
   before_ = block.column[0][block.count - 1];
+  const std::span<Arm> all = std::span(arms_).first(count_);
+  if (!block.one_period) {
+    (count_ <= lanes ? run_four : run_eight)(*this, all, block, travel.data());
+  }
   add_force(block, spring_, 0, true);
   for (std::size_t k = 0; k < count_; ++k) {
+    Arm& arm = arms_[k];
     double* const g = block.column[1 + 2 * k].data();
     double* const h = block.column[2 + 2 * k].data();
     if (block.one_period) {
-      run_evenly(arms_[k], tick_of(arms_[k], block.period_s[0]), travel.data(), block.padded, g, h);
-    } else {
-      run_unevenly(arms_[k], block, travel.data(), g, h);
+      if (arm.rows.period_s != block.period_s[0]) arm.rows = four_rows_of(block.period_s[0], arm.time_s);
+      run_evenly(arm, arm.rows, travel.data(), block.padded, g, h);
     }
-    arms_[k].g = kept(g[block.count - 1]);
-    arms_[k].h = kept(h[block.count - 1]);
-    add_force(block, arms_[k].stiffness, 1 + 2 * k, false);
+    arm.g = kept(g[block.count - 1]);
+    arm.h = kept(h[block.count - 1]);
+    add_force(block, arm.stiffness, 1 + 2 * k, false);
   }
   if (!bilateral_) push_only(block, columns());
 }

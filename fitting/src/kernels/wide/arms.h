@@ -8,8 +8,8 @@
 
 namespace kerf::fitting::wide {
 
-/// What a tick of one period does to an arm.
-struct ArmTick {
+/// What four rows of one period do to an arm.
+struct FourRows {
   double period_s = 0.0;
   std::array<double, 4> loss{};    ///< over one to four ticks
   double once = 0.0, twice = 0.0;  ///< what is left after one tick, and two
@@ -23,7 +23,7 @@ struct Arm {
   double time_s = 0.0;
   double g = 0.0;
   double h = 0.0;
-  std::array<ArmTick, 32> ticks{};  ///< of the periods that came
+  FourRows rows;  ///< of the last period
 };
 
 /// A spring and arms of a spring and a dashpot beside it, exact for motion that is linear within a tick
@@ -35,16 +35,25 @@ struct Arm {
 ///     h[n+1] = a h[n] + q a g[n] + (c - a) (x[n+1] - x[n])
 ///
 /// Four rows at a time where they are equally far apart: what the arm held before them fades by 1 - exp(-k
-/// q), and the rest is a sum over the four.
+/// q), and the rest is a sum over the four. Else row by row, four arms at a time.
 class Arms {
  public:
   static constexpr std::size_t most = (Block::most_columns - 1) / 2;
+  static constexpr std::size_t places = 8;  ///< for them, in whole packets
+
+  /// What a tick of one period does to each of them, as FourRows has it.
+  struct Tick {
+    double period_s = 0.0;
+    std::array<double, places> loss{}, gain{}, fading{}, gain_slope{};
+  };
 
   Arms(double spring, std::span<const double> stiffness, std::span<const double> time_s, bool bilateral);
 
   static constexpr bool remembers = true;
   [[nodiscard]] std::size_t columns() const noexcept { return 1 + 2 * count_; }
   void fill(Block& block) noexcept;
+  /// Of the periods that came; found anew where there were too many.
+  [[nodiscard]] const Tick& tick_of(double period_s) noexcept;
 
  private:
   std::array<Arm, most> arms_{};
@@ -53,6 +62,7 @@ class Arms {
   bool bilateral_;
   bool started_ = false;
   double before_ = 0.0;
+  std::array<Tick, 128> ticks_{};
 };
 
 }  // namespace kerf::fitting::wide

@@ -55,8 +55,7 @@ struct WideOf<models::Maxwell> {
   static constexpr bool exists = true;
   static std::optional<Wide<Arms>> at(const LawPoint& point) {
     const auto law = models::Maxwell<double>::make(point.values, point.options);
-    // Where arms are not told apart a search ends elsewhere by a rounding: more of them stay as they were.
-    if (law.integrator != models::Integrator::exact || law.arms > 1) return std::nullopt;
+    if (law.integrator != models::Integrator::exact) return std::nullopt;
     const auto all = static_cast<Eigen::Index>(1 + 2 * law.arms);
     Wide<Arms> wide{.law = Arms(law.parallel_stiffness, {law.stiffness.data(), law.arms},
                                 {law.relaxation_time.data(), law.arms}, law.bilateral),
