@@ -18,32 +18,8 @@
 namespace kerf::bench {
 namespace {
 
-constexpr std::size_t max_timed_ticks = 4000;
 constexpr std::size_t recording_timed_from = 700;  // of the chart's steps
 constexpr double runaway = 10.0;                   // times the largest force recorded
-
-/// The stretch of a recording that laws are timed along: that with most contact.
-SampledMotion timed_stretch(const AxisSeries& series, const FitSource& source, double period_s) {
-  const std::size_t rows = series.time_s.size();
-  const std::size_t length = std::min(rows, max_timed_ticks);
-  std::size_t inside = 0;
-  std::size_t most = 0;
-  std::size_t begin = 0;
-  for (std::size_t end = 0; end < rows; ++end) {
-    if (series.penetration[end] > 0.0) ++inside;
-    if (end >= length && series.penetration[end - length] > 0.0) --inside;
-    if (end + 1 < length || inside <= most) continue;
-    most = inside;
-    begin = end + 1 - length;
-  }
-  SampledMotion stretch = ticks_at(1.0 / period_s, length);
-  for (std::size_t i = 0; i < length; ++i) {
-    const models::Contact& contact = source.contact;
-    stretch.sample[i].position[0] = contact.position + contact.direction * series.penetration[begin + i];
-    stretch.sample[i].velocity[0] = contact.direction * series.velocity[begin + i];
-  }
-  return stretch;
-}
 
 FitRecordingOptions options_of(const FitPlan& plan, const ChartOptions& options) {
   FitRecordingOptions fit{.models = {plan.model}};
@@ -220,7 +196,11 @@ class RecordingChart {
   }
 
   void time() {
-    const SampledMotion stretch = timed_stretch(series_, source_, period_s_);
+    SampledMotion stretch = timed_stretch(series_, period_s_);
+    for (auto& at : stretch.sample) {
+      at.position[0] = source_.contact.position + source_.contact.direction * at.position[0];
+      at.velocity[0] *= source_.contact.direction;
+    }
     std::vector<TimedLaw> laws;
     for (const ChartPoint& point : chart_.points) {
       laws.push_back({.rendering = LawRendering(point.file.law, point.file.contact, {0}), .path = &stretch});

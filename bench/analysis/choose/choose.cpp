@@ -14,6 +14,7 @@
 #include <fmt/core.h>
 
 #include "chart/cost/tick_cost.h"
+#include "chart/cost/timed_stretch.h"
 #include "fits/fit_series.h"
 #include "recordings/axis_series.h"
 #include "threads/for_each_index.h"
@@ -22,7 +23,7 @@ namespace kerf::bench {
 namespace {
 
 constexpr std::size_t timing_rounds = 9;
-constexpr double timing_s = 0.05;  // a law, at most
+constexpr double timing_s = 0.01;  // a law, at most: laws are told apart by whole microseconds
 
 /// A choice while it is made.
 class LawSelection {
@@ -128,9 +129,7 @@ class LawSelection {
                       choice_.jnd_n, choice_.force_unit, choice_.force_rms_n, choice_.force_unit));
     const double duration_s = series.time_s.back() - series.time_s.front();
     const auto periods = static_cast<double>(std::max<std::size_t>(series.time_s.size() - 1, 1));
-    path_ = ticks_at(1.0 / std::max(1e-6, duration_s / periods), series.force.size());
-    for (std::size_t i = 0; i < series.force.size(); ++i)
-      path_.sample[i] = {.position = {series.penetration[i]}, .velocity = {series.velocity[i]}};
+    path_ = timed_stretch(series, std::max(1e-6, duration_s / periods));
   }
 
   void describe_folds(std::size_t cycles) {
@@ -182,39 +181,38 @@ class LawSelection {
     candidate.within_jnd = result.can_be_chosen() && candidate.error_n <= choice_.jnd_n;
   }
 
-  /// Of laws that find the same segments all but one wait for it: the richest of them comes before all
-  /// others, and its folds are shared out among the threads.
-  [[nodiscard]] std::vector<std::size_t> first_of_segments(std::span<const Candidate> candidates) const {
-    std::vector<std::size_t> first;
-    std::set<std::vector<std::string>> known;
-    for (std::size_t i = candidates.size(); memory_ && i-- > 0;) {
-      const CandidateLaw& law = candidates[i].law;
-      const models::LawFacts& facts = models::law_facts(law.model);
-      if (facts.search != models::Search::segments) continue;
-      std::vector<std::string> options{law.model};
-      std::ranges::remove_copy_if(law.law_options, std::back_inserter(options),
-                                  [&](const std::string& option) {
-                                    return option.starts_with(fmt::format("{}=", facts.size.option));
-                                  });
-      if (known.insert(std::move(options)).second) first.push_back(i);
-    }
-    return first;
+  /// Laws that find the same segments, by what they are but for the number of these.
+  [[nodiscard]] static std::vector<std::string> segments_of(const CandidateLaw& law) {
+    const models::LawFacts& facts = models::law_facts(law.model);
+    if (facts.search != models::Search::segments) return {};
+    std::vector<std::string> same{law.model};
+    std::ranges::remove_copy_if(law.law_options, std::back_inserter(same), [&](const std::string& option) {
+      return option.starts_with(fmt::format("{}=", facts.size.option));
+    });
+    return same;
   }
 
-  /// The richest first: they take longest.
+  /// The richest first: they take longest. Of laws that find the same segments all but the richest wait for
+  /// it, and have less to do then; its folds are shared out among the threads.
   void fit_all(std::span<Candidate> candidates) const {
-    const auto fit = [&](std::size_t i, std::size_t threads) {
-      if (stop_) return;
-      fit_one(candidates[i], threads);
-      if (options_.done != nullptr) ++*options_.done;
-    };
-    const std::vector<std::size_t> first = first_of_segments(candidates);
-    for (const std::size_t i : first) fit(i, options_.threads);
-    std::vector<std::size_t> rest;
+    std::vector<std::size_t> first, at_once, later;
+    std::set<std::vector<std::string>> found;
     for (std::size_t i = candidates.size(); i-- > 0;) {
-      if (std::ranges::find(first, i) == first.end()) rest.push_back(i);
+      const std::vector<std::string> segments = segments_of(candidates[i].law);
+      const bool finds = memory_ && !segments.empty();
+      (!finds ? at_once : found.insert(segments).second ? first : later).push_back(i);
     }
-    for_each_index(rest.size(), options_.threads, [&](std::size_t i) { fit(rest[i], 1); });
+    const std::size_t finders = first.size();
+    first.insert(first.end(), at_once.begin(), at_once.end());
+    const auto fit = [&](std::span<const std::size_t> part, std::size_t sharing) {
+      for_each_index(part.size(), options_.threads, [&](std::size_t i) {
+        if (stop_) return;
+        fit_one(candidates[part[i]], i < sharing ? options_.threads : 1);
+        if (options_.done != nullptr) ++*options_.done;
+      });
+    };
+    fit(first, finders);
+    fit(later, 0);
     search_.end_if_stopped();
   }
 
@@ -239,7 +237,7 @@ class LawSelection {
   LawChoice choice_;
   CandidateSearch search_;
   RowChoice rows_;      ///< with its cycles by number
-  SampledMotion path_;  ///< the recording, as penetration on one axis
+  SampledMotion path_;  ///< that laws are timed along
   std::shared_ptr<fitting::SegmentedMemory> memory_;
 };
 
