@@ -1,5 +1,5 @@
 # peers: python3-h5py python3-numpy
-# targets: kerf kerf_recording_benchmark kerf_live_benchmark
+# targets: kerf kerf_reader kerf_recording_benchmark kerf_live_benchmark kerf_page_checks
 """What stands behind `kerf studio`: each studio_*.py beside this one measures one thing and writes its section.
 
 All of them, or one: scripts/benchmark studio [loop]
