@@ -46,7 +46,12 @@ export class WorkspaceStore {
   }
 
   private async ask(): Promise<Workspace> {
-    const found = await this.api.get<Workspace | { unchanged: true }>("/api/workspace", { unless: this.state });
+    // By the address that studio.html asks for already while this program is still on its way.
+    const first = this.state === "" ? { token: this.api.token } : {};
+    const found = await this.api.get<Workspace | { unchanged: true }>("/api/workspace", {
+      unless: this.state,
+      ...first,
+    });
     if (!this.current || !("unchanged" in found)) {
       this.current = found as Workspace;
       this.state = this.current.state;
