@@ -221,14 +221,16 @@ struct OneStrokeEach {
 
   explicit OneStrokeEach(const std::vector<std::function<double(double)>>& forces) {
     constexpr std::size_t rows = 200;
+    std::uint32_t number = 0;
     for (const auto& force : forces) {
+      ++number;
       for (std::size_t i = 0; i < rows; ++i) {
         const double phase = 2.0 * M_PI * static_cast<double>(i) / rows;
         strokes.time_s.push_back(1e-3 * static_cast<double>(strokes.time_s.size()));
         strokes.penetration.push_back(0.2 * (1.0 - std::cos(phase)));
         strokes.velocity.push_back(40.0 * M_PI / rows * std::sin(phase));
         strokes.force.push_back(force(strokes.penetration.back()));
-        strokes.cycle.push_back(static_cast<std::uint32_t>(strokes.time_s.size() - 1) / rows + 1);
+        strokes.cycle.push_back(number);
       }
     }
   }
