@@ -46,12 +46,7 @@ export class WorkspaceStore {
   }
 
   private async ask(): Promise<Workspace> {
-    // By the address that studio.html asks for already while this program is still on its way.
-    const first = this.state === "" ? { token: this.api.token } : {};
-    const found = await this.api.get<Workspace | { unchanged: true }>("/api/workspace", {
-      unless: this.state,
-      ...first,
-    });
+    const found = await this.api.get<Workspace | { unchanged: true }>("/api/workspace", { unless: this.state });
     if (!this.current || !("unchanged" in found)) {
       this.current = found as Workspace;
       this.state = this.current.state;
