@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <iterator>
 #include <optional>
 #include <stdexcept>
@@ -9,6 +10,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <kerf/schema/live_recording.h>
 #include <kerf/schema/session.h>
@@ -54,6 +56,12 @@ std::optional<FileKind> kind_of(const std::string& name) {
   return std::nullopt;
 }
 
+fs::file_time_type modified_of(const struct stat& about) {
+  const auto since =
+      std::chrono::seconds(about.st_mtim.tv_sec) + std::chrono::nanoseconds(about.st_mtim.tv_nsec);
+  return std::chrono::file_clock::from_sys(std::chrono::sys_time<std::chrono::nanoseconds>(since));
+}
+
 std::string id_of_name(const std::string& name) { return sha256_of(std::string_view(name)).substr(0, 16); }
 
 bool is_name(std::string_view name) {
@@ -91,17 +99,16 @@ std::vector<WorkspaceEntry> Workspace::list() const {
     const std::string file = at->path().filename().string();
     const bool is_hidden = file.starts_with('.') || schema::is_unfinished(at->path());
     if (at->is_symlink(error) || is_hidden || at.depth() >= max_depth) at.disable_recursion_pending();
-    if (is_hidden || at->is_symlink(error) || !at->is_regular_file(error)) continue;
-    const auto kind = kind_of(file);
-    if (!kind) continue;
+    const auto kind = is_hidden ? std::nullopt : kind_of(file);
+    struct stat about {};
+    if (!kind || ::lstat(at->path().c_str(), &about) != 0 || !S_ISREG(about.st_mode)) continue;
     WorkspaceEntry entry{.name = at->path().native().substr(folder.size()),
                          .kind = *kind,
                          .path = at->path(),
-                         .bytes = at->file_size(error),
-                         .modified = at->last_write_time(error)};
+                         .bytes = static_cast<std::uintmax_t>(about.st_size),
+                         .modified = modified_of(about)};
     entry.id = id_of_name(entry.name);
     entry.is_looked_into = entry.kind != FileKind::recording;
-    error.clear();  // a file that has just gone
     all.push_back(std::move(entry));
   }
   std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.name < b.name; });

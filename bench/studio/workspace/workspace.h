@@ -2,12 +2,12 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <thread>
+#include <unordered_map>
 #include <vector>
 
 namespace kerf::bench {
@@ -87,12 +87,12 @@ class Workspace {
   [[nodiscard]] bool take_what_is_known(WorkspaceEntry& entry) const;
 
   std::filesystem::path folder_;
-  mutable std::mutex mutex_;                  ///< of all below
-  std::vector<WorkspaceEntry> found_;         ///< by the last scan
-  std::map<std::string, Looked> looked_;      ///< by id
-  std::vector<WorkspaceEntry> to_look_into_;  ///< the next one last
-  bool is_looking_ = false;                   ///< the thread is at work
-  std::jthread looker_;                       ///< last: it uses the rest
+  mutable std::mutex mutex_;                        ///< of all below
+  std::vector<WorkspaceEntry> found_;               ///< by the last scan
+  std::unordered_map<std::string, Looked> looked_;  ///< by id
+  std::vector<WorkspaceEntry> to_look_into_;        ///< the next one last
+  bool is_looking_ = false;                         ///< the thread is at work
+  std::jthread looker_;                             ///< last: it uses the rest
 };
 
 }  // namespace kerf::bench
