@@ -21,7 +21,7 @@
 namespace kerf::bench {
 namespace {
 
-std::string json_text(const nlohmann::ordered_json& json) {
+std::string text_of_json(const nlohmann::ordered_json& json) {
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
@@ -37,9 +37,9 @@ std::string list_of_recordings(const std::vector<WorkspaceEntry>& entries) {
     if (it.kind != FileKind::recording) continue;
     fmt::format_to(std::back_inserter(list),
                    R"({}{{"id":"{}","name":{},"bytes":{},"modified":"{}","partial":{})",
-                   list.empty() ? "" : ",", it.id, json_text(it.name), it.bytes, modified_of(it),
+                   list.empty() ? "" : ",", it.id, text_of_json(it.name), it.bytes, modified_of(it),
                    it.name.ends_with(".partial"));
-    if (it.seconds) fmt::format_to(std::back_inserter(list), R"(,"seconds":{})", json_text(*it.seconds));
+    if (it.seconds) fmt::format_to(std::back_inserter(list), R"(,"seconds":{})", text_of_json(*it.seconds));
     list += '}';
   }
   return list;
@@ -95,7 +95,7 @@ nlohmann::ordered_json session_entry(const WorkspaceEntry& entry) {
 
 /// Told by what each file is and by what is `read` from some, so that the list itself need not be made.
 std::string state_of(const std::vector<WorkspaceEntry>& entries, const nlohmann::ordered_json& read) {
-  std::string all = json_text(read);
+  std::string all = text_of_json(read);
   for (const WorkspaceEntry& it : entries)
     fmt::format_to(std::back_inserter(all), "\n{} {} {} {} {} {}", it.id, name_of(it.kind), it.bytes,
                    it.modified.time_since_epoch().count(), it.is_looked_into, it.seconds.value_or(-1.0));
@@ -137,7 +137,7 @@ std::string workspace_json(Workspace& workspace, const std::string& device, cons
   json["files"] = other_files(entries);
   json["unlooked"] = std::ranges::count(entries, false, &WorkspaceEntry::is_looked_into);
   json["state"] = state;
-  std::string text = json_text(json);
+  std::string text = text_of_json(json);
   return text.insert(1, fmt::format(R"("recordings":[{}],)", list_of_recordings(entries)));
 }
 
