@@ -250,7 +250,7 @@ TEST(Line, HeldOutIsNumPysOfTheOtherCycles) {
   EXPECT_NEAR(OneStrokeEach({first, second}).held_out(2), 0.4690415759823427, 1e-12);
   const OneStrokeEach three({first, second, third});
   EXPECT_NEAR(three.held_out(3), 1.5493278112351414, 1e-12);
-  EXPECT_NEAR(three.held_out(2, 0.3), 0.4690415759823427, 1e-12)
+  EXPECT_NEAR(three.held_out(2, 0.4), 0.4690415759823427, 1e-12)
       << "what no fit sees, a line does not either";
 }
 
