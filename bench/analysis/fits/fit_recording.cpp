@@ -349,8 +349,9 @@ RecordingFit fit_recordings(std::span<const FitSource> all, const FitRecordingOp
       return Refusal{.model = model, .why = error.what()};
     }
   };
-  // Beside each other while there is room: each takes memory for every sample. The last of them take longest.
-  constexpr std::size_t most_samples_beside = 1'000'000;
+  // Beside each other while there is room, since each takes memory for every sample; from the last on, which
+  // take longest.
+  constexpr std::size_t most_samples_beside = 250'000;
   const std::size_t beside_each_other = fit.samples() <= most_samples_beside ? options.fit.threads : 1;
   std::vector<LawOutcome> found(models.size());
   for_each_index(models.size(), beside_each_other, [&](std::size_t i) {

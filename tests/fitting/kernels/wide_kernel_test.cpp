@@ -42,6 +42,7 @@ struct Strokes {
     double before = 0.003;
     for (std::size_t i = 0; i < count; ++i) {
       period_s.push_back(jitters ? 1e-3 * static_cast<double>(1 + (i * i) % 3) : 1e-3);
+      if (jitters && i % 4 == 0) period_s.back() += 1e-7 * static_cast<double>(i);  // more than are kept
       phase += 4.0 * period_s.back();
       const double depth = i % 50 < 3 ? before : 0.01 * (0.7 - std::cos(phase));
       motion.push_back({.penetration = depth, .velocity = (depth - before) / period_s.back()});

@@ -13,6 +13,9 @@ namespace {
 constexpr double negligible = 1e-100;
 
 double kept(double value) { return value < negligible && value > -negligible ? 0.0 : value; }
+[[gnu::always_inline]] inline Pack kept(const Pack& value) {
+  return where((value >= negligible) | (value <= -negligible), value);
+}
 
 /// c - a = ((1 - a) - q a) / q; by its series where the difference would lose its digits.
 double gain_slope_of(double q, double loss) {
@@ -63,12 +66,10 @@ KERF_WIDE_PACKETS void run_evenly(Arm& arm, const FourRows& tick, const double* 
     store(h + i, now_h);
     held_g = last_of(now_g);
     held_h = last_of(now_h);
-    held_g = where((held_g >= negligible) | (held_g <= -negligible), held_g);
-    held_h = where((held_h >= negligible) | (held_h <= -negligible), held_h);
+    held_g = kept(held_g);
+    held_h = kept(held_h);
   }
 }
-
-Pack kept(const Pack& value) { return where((value >= negligible) | (value <= -negligible), value); }
 
 /// `Packets` of arms, row by row.
 template <std::size_t Packets>
