@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include "chart/cost/timed_stretch.h"
 #include "chart/fidelities.h"
 #include "chart/fit_plan.h"
 #include "chart/fronts.h"
