@@ -2,16 +2,18 @@
 """Runs ctest, and says in the last lines what failed and what was not tested: skips by reason, and which command brings what
 was missing.
 
-    scripts/test.d/run_tests.py [--totals FILE] CTEST_ARGUMENT...
+    scripts/test.d/run_tests.py [--totals FILE] [--until TIME] CTEST_ARGUMENT...
 
 The very last line is "N passed, N failed, N skipped". Where a test is a whole suite of GoogleTest (over USB, or under the
 sanitizers), each of its cases counts, and is named, as a test of its own. Where the environment says CI=true a skip is a failure,
 unless tests/skips-allowed.txt names it with its reason. --totals appends "passed failed skipped" to a file, and a line for every
-test that failed: "failed NAME".
+test that failed: "failed NAME", and one where not all were run. --until (seconds since 1970) runs the tests in parts, each of them one in so many of all, and begins
+none that may not end in time.
 
-Exit status: ctest's own; 1 if ctest passed and a skip was a failure.
+Exit status: ctest's own; 1 if ctest passed and a skip was a failure; 124 if what was run passed, and not all was.
 """
 
+import argparse
 import fnmatch
 import os
 import re
@@ -19,6 +21,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass
 from pathlib import Path
@@ -28,6 +31,9 @@ ALLOWED = Path(__file__).resolve().parents[2] / "tests" / "skips-allowed.txt"
 # Of what a failed test said, at the end: this many lines, and of each this many characters.
 SHOWN = 12
 LONGEST_LINE = 300
+
+PARTS = 12  # of tests that must end at a time
+TIME_IS_UP = 124  # as timeout(1) has it
 
 SAYS_NOTHING = "it says nothing"
 
@@ -55,6 +61,11 @@ class Outcome:
     passed: int
     failures: list[Failure]
     skips: list[Skip]
+
+    def add(self, other: "Outcome") -> None:
+        self.passed += other.passed
+        self.failures += other.failures
+        self.skips += other.skips
 
 
 def last_line(text: str) -> str:
@@ -194,10 +205,32 @@ def run_without_terminal(command: list[str]) -> int:
             raise
 
 
+def count_of(ctest: list[str]) -> int:
+    listed = subprocess.run([*ctest, "--show-only"], capture_output=True, text=True, check=False).stdout
+    total = re.search(r"^Total Tests: (\d+)", listed, re.MULTILINE)
+    return int(total[1]) if total else 0
+
+
+def run_parts(ctest: list[str], folder: Path, until: float, count: int) -> tuple[int, list[Path], int]:
+    """@returns ctest's status, what it wrote of each part, and how many of so many tests were not begun."""
+    status, written, longest = 0, [], 0.0
+    parts = min(PARTS, count)  # of a part that begins behind the last test ctest runs all
+    for first in range(1, parts + 1):
+        began = time.time()
+        if began + longest > until:
+            return status, written, sum(len(range(part, count + 1, parts)) for part in range(first, parts + 1))
+        written.append(folder / f"junit{first}.xml")
+        status = max(status, run_without_terminal([*ctest, "--output-junit", str(written[-1]),
+                                                   "--tests-information", f"{first},,{parts}"]))
+        longest = max(longest, time.time() - began)
+    return status, written, 0
+
+
 def main(arguments: list[str]) -> int:
-    totals = None
-    if arguments[:1] == ["--totals"]:
-        totals, arguments = arguments[1], arguments[2:]
+    own = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
+    own.add_argument("--totals")
+    own.add_argument("--until", type=float)
+    options, arguments = own.parse_known_args(arguments)
     skip_is_failure = os.environ.get("CI", "").lower() in ("true", "1")
     try:
         allowances = read_allowances(ALLOWED.read_text()) if skip_is_failure else []
@@ -205,22 +238,32 @@ def main(arguments: list[str]) -> int:
         print(f"{ALLOWED}: {problem}", file=sys.stderr)
         return 2
     with tempfile.TemporaryDirectory() as folder:
-        junit = Path(folder) / "junit.xml"
         # Of a passed test ctest keeps 1 KiB, and the skips within it may stand behind that.
-        status = run_without_terminal(
-            ["ctest", "--no-tests=error", "--test-output-size-passed", "10000000", "--output-junit", str(junit), *arguments])
-        if not junit.exists():  # `ctest --show-only` and the like
-            return status
-        outcome = outcome_of(junit.read_text())
-    if outcome.passed + len(outcome.failures) + len(outcome.skips) == 0:
+        ctest = ["ctest", "--no-tests=error", "--test-output-size-passed", "10000000", *arguments]
+        written, not_run = [Path(folder) / "junit.xml"], 0
+        if options.until is not None and (count := count_of(ctest)):
+            status, written, not_run = run_parts(ctest, Path(folder), options.until, count)
+        else:
+            status = run_without_terminal([*ctest, "--output-junit", str(written[0])])
+        outcome = Outcome(0, [], [])
+        for file in written:
+            if file.exists():
+                outcome.add(outcome_of(file.read_text()))
+    if outcome.passed + len(outcome.failures) + len(outcome.skips) + not_run == 0:  # `ctest --show-only` and the like
         return status
     lines, passes = closing_lines(outcome, allowances, skip_is_failure)
-    if totals:
-        with open(totals, "a", encoding="utf-8") as file:
+    late = f"The time was up: {not_run} of {count} tests were not run" if not_run else ""
+    if options.totals:
+        with open(options.totals, "a", encoding="utf-8") as file:
             file.write(f"{outcome.passed} {len(outcome.failures)} {len(outcome.skips)}\n")
             file.writelines(f"failed {failure.name}\n" for failure in outcome.failures)
+            file.write(late and f"{late}\n")
+    if late:
+        lines.insert(0, late)
     print("\n" + "\n".join(lines), flush=True)
-    return status if status or passes else 1
+    if status or not passes:
+        return status or 1
+    return TIME_IS_UP if not_run else 0
 
 
 if __name__ == "__main__":

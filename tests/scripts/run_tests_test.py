@@ -4,8 +4,10 @@ import os
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 from pathlib import Path
+from unittest import mock
 
 SCRIPTS = Path(__file__).resolve().parents[2] / "scripts" / "test.d"
 sys.path.insert(0, str(SCRIPTS))
@@ -193,6 +195,27 @@ set_tests_properties(skips PROPERTIES SKIP_RETURN_CODE 77)
         self.assertEqual(status, 0)
         self.assertIn("\n100% tests passed, 0 tests failed out of 2\n", output)
         self.assertTrue(output.endswith("     1  no such thing here: skips\n1 passed, 0 failed, 1 skipped\n"), output)
+
+    def test_are_all_run_where_they_end_in_time(self):
+        status, output = self.run_program("--until", str(time.time() + 600), "-E", "fails")
+        self.assertEqual(status, 0)
+        self.assertTrue(output.endswith("     1  no such thing here: skips\n1 passed, 0 failed, 1 skipped\n"), output)
+
+    def test_are_counted_where_the_time_is_up(self):
+        totals = Path(self.folder.name, "late")
+        status, output = self.run_program("--until", "0", "--totals", str(totals))
+        self.assertEqual(status, run_tests.TIME_IS_UP)
+        self.assertIn("The time was up: 3 of 3 tests were not run\n0 passed, 0 failed, 0 skipped\n", output)
+        self.assertEqual(totals.read_text(), "0 0 0\nThe time was up: 3 of 3 tests were not run\n")
+
+    def test_fail_where_a_test_fails_before_the_time_is_up(self):
+        def fails_for_eleven_seconds(_):
+            clock.return_value = 11.0
+            return 8
+
+        with mock.patch.object(run_tests.time, "time", return_value=0.0) as clock, \
+                mock.patch.object(run_tests, "run_without_terminal", fails_for_eleven_seconds):
+            self.assertEqual(run_tests.run_parts([], Path(), 10.0, 25), (8, [Path("junit1.xml")], 22))
 
     def test_fail_where_a_test_fails(self):
         status, output = self.run_program()

@@ -9,6 +9,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <kerf/models/scissors_mesh.h>
+
 #include "laws/law_file.h"
 
 namespace kerf::bench {
@@ -46,27 +48,22 @@ TEST(CountedTicks, HoldThoseOnWhichAMeshIsSplit) {
       read_law_file(std::filesystem::path(KERF_SOURCE_DIR) / "examples/scissors_mesh.law.toml");
   const SampledMotion path = cuts(4000);
   const TimedLaw timed{LawRendering(file.law, file.contact, {0, 1}), &path};
-  TimedTicks ticks(timed);
-  // A tick is as dear as at its quickest in five passages: what it does, without what disturbed it.
-  std::vector<std::uint64_t> least(path.ticks(), static_cast<std::uint64_t>(-1));
-  for (int passage = 0; passage < 5; ++passage) {
-    ticks.restart();
-    for (std::size_t i = 0; i < path.ticks(); ++i) least[i] = std::min(least[i], ticks.time(i));
-  }
-  std::vector<std::uint64_t> sorted = least;
-  std::ranges::nth_element(sorted, sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2));
-  const std::uint64_t typical = sorted[sorted.size() / 2];
+  const TimedTicks ticks(timed);
+  const auto law = models::ScissorsMesh::make(file.law.values(), file.law.options());
+  auto state = law.initial_state();
   LawRendering rendering = timed.rendering;
-  std::vector<std::size_t> dear;
-  bool dear_without_force = false;
-  for (std::size_t i = 0; i < least.size(); ++i) {
+  std::vector<std::size_t> split;
+  bool split_without_force = false;
+  for (std::size_t i = 0; i < path.ticks(); ++i) {
+    const std::uint32_t before = state.cuts;
+    (void)law.step(state, path.sample[i], path.period_s[i]);
     const Command command = rendering(path.sample[i], path.period_s[i]);
-    if (i == 0 || least[i] <= 2 * typical) continue;
-    dear.push_back(i);
-    dear_without_force = dear_without_force || (command.force[0] == 0.0 && command.force[1] == 0.0);
+    if (state.cuts == before) continue;
+    split.push_back(i);
+    split_without_force = split_without_force || (command.force[0] == 0.0 && command.force[1] == 0.0);
   }
-  ASSERT_TRUE(dear_without_force) << "splitting costs, and nothing is felt on that tick";
-  EXPECT_THAT(ticks.counted(), IsSupersetOf(dear));
+  ASSERT_TRUE(split_without_force) << "splitting costs, and nothing is felt on that tick";
+  EXPECT_THAT(ticks.counted(), IsSupersetOf(split));
   EXPECT_LT(ticks.counted().size(), path.ticks()) << "and the scissors are open at times";
 }
 
