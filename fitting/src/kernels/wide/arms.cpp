@@ -41,34 +41,51 @@ FourRows four_rows_of(double period_s, double time_s) {
   return rows;
 }
 
-/// y[n] = a y[n-1] + u[n] over four rows from rest, and what is left there of what was before.
-[[gnu::always_inline]] inline Pack recurred(const Pack& input, const Pack& held, const Pack& once,
-                                            const Pack& twice, const Pack& loss) {
+/// y[n] = a y[n-1] + u[n] over four rows from rest.
+[[gnu::always_inline]] inline Pack recurred(const Pack& input, const Pack& once, const Pack& twice) {
   const Pack zero{};
   const Pack two = input + once * one_later(zero, input);
-  const Pack four = two + twice * two_later(zero, two);
-  return four + (held - loss * held);
+  return two + twice * two_later(zero, two);
 }
 
-KERF_WIDE_PACKETS void run_evenly(Arm& arm, const FourRows& tick, const double* travel, std::size_t rows,
-                                  double* g, double* h) {
+/// Within how many time constants what is not negligible stays clear of the denormal numbers.
+constexpr double clear_of_denormals = 400.0;
+
+/// A packet waits for the one before by three operations alone: what is left of what the arm held there is
+/// reckoned with a second time, for all of the next. `Fades`: where rows may come near the denormal numbers.
+template <bool Fades>
+[[gnu::always_inline]] inline void run_rows(Arm& arm, const FourRows& tick, const double* travel,
+                                            std::size_t rows, double* g, double* h) {
   const Pack loss = load(tick.loss.data());
+  const Pack whole_loss = all(tick.loss[3]);
   const Pack once = all(tick.once);
   const Pack twice = all(tick.twice);
   Pack held_g = all(arm.g);
   Pack held_h = all(arm.h);
   for (std::size_t i = 0; i < rows; i += lanes) {
     const Pack moved = load(travel + i);
-    const Pack now_g = recurred(tick.gain * moved, held_g, once, twice, loss);
+    const Pack new_g = recurred(tick.gain * moved, once, twice);
+    const Pack now_g = new_g + (held_g - loss * held_g);
     const Pack input = tick.fading * one_later(held_g, now_g) + tick.gain_slope * moved;
-    const Pack now_h = recurred(input, held_h, once, twice, loss);
+    const Pack new_h = recurred(input, once, twice);
     store(g + i, now_g);
-    store(h + i, now_h);
-    held_g = last_of(now_g);
-    held_h = last_of(now_h);
-    held_g = kept(held_g);
-    held_h = kept(held_h);
+    store(h + i, new_h + (held_h - loss * held_h));
+    held_g = last_of(new_g) + (held_g - whole_loss * held_g);
+    held_h = last_of(new_h) + (held_h - whole_loss * held_h);
+    if constexpr (Fades) {
+      held_g = kept(held_g);
+      held_h = kept(held_h);
+    }
   }
+}
+
+KERF_WIDE_PACKETS void run_fading(Arm& arm, const FourRows& tick, const double* travel, std::size_t rows,
+                                  double* g, double* h) {
+  run_rows<true>(arm, tick, travel, rows, g, h);
+}
+KERF_WIDE_PACKETS void run_evenly(Arm& arm, const FourRows& tick, const double* travel, std::size_t rows,
+                                  double* g, double* h) {
+  run_rows<false>(arm, tick, travel, rows, g, h);
 }
 
 /// `Packets` of arms, row by row.
@@ -202,7 +219,9 @@ void Arms::fill(Block& block) noexcept {
     double* const h = block.column[2 + 2 * k].data();
     if (block.one_period) {
       if (arm.rows.period_s != block.period_s[0]) arm.rows = four_rows_of(block.period_s[0], arm.time_s);
-      run_evenly(arm, arm.rows, travel.data(), block.padded, g, h);
+      const bool fades =
+          block.period_s[0] * static_cast<double>(Block::most_rows) > clear_of_denormals * arm.time_s;
+      (fades ? run_fading : run_evenly)(arm, arm.rows, travel.data(), block.padded, g, h);
     }
     arm.g = kept(g[block.count - 1]);
     arm.h = kept(h[block.count - 1]);

@@ -30,35 +30,61 @@ template <std::size_t Columns, typename Sum>
   for (std::size_t k = 0; k < total.size(); ++k) store(sum[k].data(), total[k]);
 }
 
-/// One column with `Together` others from `first` on.
-template <std::size_t Together, typename Value, typename Sum>
-[[gnu::always_inline]] inline void add_together(const Block::Column& weighed, const Value& value,
+/// `Rows` columns from `a` on, weighed, with `Together` others from `first` on.
+template <std::size_t Rows, std::size_t Together, typename Value, typename Sum>
+[[gnu::always_inline]] inline void add_together(const Block::Column* weighed, const Value& value,
                                                 std::size_t padded, std::size_t a, std::size_t first,
                                                 Sum& sum) {
-  std::array<Pack, Together> total;
-  for (std::size_t b = 0; b < Together; ++b) total[b] = load(sum[place(a, first + b)].data());
-  for (std::size_t i = 0; i < padded; i += lanes) {
-    const Pack one = load(&weighed[i]);
-    for (std::size_t b = 0; b < Together; ++b) total[b] += one * load(&value[first + b][i]);
+  std::array<Pack, Rows * Together> total;
+  for (std::size_t r = 0; r < Rows; ++r) {
+    for (std::size_t b = 0; b < Together; ++b)
+      total[r * Together + b] = load(sum[place(a + r, first + b)].data());
   }
-  for (std::size_t b = 0; b < Together; ++b) store(sum[place(a, first + b)].data(), total[b]);
+  for (std::size_t i = 0; i < padded; i += lanes) {
+    std::array<Pack, Rows> one;
+    for (std::size_t r = 0; r < Rows; ++r) one[r] = load(&weighed[r][i]);
+    for (std::size_t b = 0; b < Together; ++b) {
+      const Pack other = load(&value[first + b][i]);
+      for (std::size_t r = 0; r < Rows; ++r) total[r * Together + b] += one[r] * other;
+    }
+  }
+  for (std::size_t r = 0; r < Rows; ++r) {
+    for (std::size_t b = 0; b < Together; ++b)
+      store(sum[place(a + r, first + b)].data(), total[r * Together + b]);
+  }
 }
 
+/// `Rows` columns from `a` on, with those up to the first of them.
+template <std::size_t Rows, typename Value, typename Sum>
+[[gnu::always_inline]] inline void add_rows(const Block::Column* weighed, const Value& value,
+                                            std::size_t padded, std::size_t a, Sum& sum) {
+  std::size_t b = 0;
+  for (; b + 4 <= a + 1; b += 4) add_together<Rows, 4>(weighed, value, padded, a, b, sum);
+  for (; b <= a; ++b) add_together<Rows, 1>(weighed, value, padded, a, b, sum);
+}
+
+/// Two columns at a time: what is loaded of others serves both.
 template <typename Sum>
 [[gnu::always_inline]] inline void add_many(const Block& block, std::size_t columns, Sum& sum) {
   alignas(64) std::array<Block::Column, Block::most_columns + 1> value;
-  alignas(64) Block::Column weighed;
+  alignas(64) std::array<Block::Column, 2> weighed;
   for (std::size_t i = 0; i < block.padded; i += lanes) {
     const Bits counts = load(&block.weight[i]) != 0.0;
     for (std::size_t a = 0; a < columns; ++a) store(&value[a][i], where(counts, load(&block.column[a][i])));
     store(&value[columns][i], where(counts, load(&block.force[i]) - load(&block.measured[i])));
   }
-  for (std::size_t a = 0; a <= columns; ++a) {
-    for (std::size_t i = 0; i < block.padded; i += lanes)
-      store(&weighed[i], load(&block.weight[i]) * load(&value[a][i]));
-    std::size_t b = 0;
-    for (; b + 4 <= a + 1; b += 4) add_together<4>(weighed, value, block.padded, a, b, sum);
-    for (; b <= a; ++b) add_together<1>(weighed, value, block.padded, a, b, sum);
+  for (std::size_t a = 0; a <= columns; a += 2) {
+    const std::size_t rows = std::min<std::size_t>(2, columns + 1 - a);
+    for (std::size_t r = 0; r < rows; ++r) {
+      for (std::size_t i = 0; i < block.padded; i += lanes)
+        store(&weighed[r][i], load(&block.weight[i]) * load(&value[a + r][i]));
+    }
+    if (rows == 1) {
+      add_rows<1>(&weighed[0], value, block.padded, a, sum);
+    } else {
+      add_rows<2>(&weighed[0], value, block.padded, a, sum);
+      add_together<1, 1>(&weighed[1], value, block.padded, a + 1, a + 1, sum);
+    }
   }
 }
 
