@@ -84,6 +84,16 @@ HeldOut held_out(const std::function<Trained(const Weights& seen)>& train_on, co
   return {.fitted = together(fitted), .rendered = render ? together(as_rendered) : FoldErrors{}};
 }
 
+double least_held_out(const std::vector<double>& residuals, const Samples& samples, const Weights& weights) {
+  Share all;
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    if (!shown(samples, weights, i)) continue;
+    all.squares += residuals[i] * residuals[i];
+    all.count += 1.0;
+  }
+  return std::sqrt(all.squares / all.count);
+}
+
 Paired paired(const std::vector<double>& folds, const std::vector<double>& others) {
   if (folds.size() != others.size() || folds.size() < 2) return {};
   std::vector<double> differences;

@@ -25,6 +25,12 @@ struct HeldOut {
                                const Samples& samples, const Weights& weights, std::size_t threads,
                                const decltype(FitOptions::render)& render = {});
 
+/// Root mean square of the samples that held_out() would judge by; NaN if there are none. Where both are
+/// least squares it never gives less than this of the law that was shown all: shown fewer, a law leaves no
+/// more in those than that one does, and in all no less, hence no less in the others.
+[[nodiscard]] double least_held_out(const std::vector<double>& residuals, const Samples& samples,
+                                    const Weights& weights);
+
 /// Mean difference of the folds' mean squares, and its standard error; 0 where they cannot be paired.
 struct Paired {
   double mean = 0.0;

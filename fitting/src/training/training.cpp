@@ -134,14 +134,21 @@ Trained train_once(std::string_view model, const FitOptions& sized, std::size_t 
   return memory != nullptr ? memory->once(seen, count, function_tolerance, train) : train();
 }
 
+/// Its folds are not fitted where its held-out error cannot come below `enough`.
 Size tried(std::string_view model, const FitOptions& sized, std::size_t count, const Samples& samples,
-           const Weights& seen, double function_tolerance, TrainedMemory* memory) {
+           const Weights& seen, double function_tolerance, TrainedMemory* memory, double enough) {
   Size size{.law = train_once(model, sized, count, samples, seen, function_tolerance, memory)};
   if (size.law.solution.values.empty()) return size;
-  const auto left = of_those(residuals_of(size.law.problem, size.law.solution.values, samples), seen);
+  const std::vector<double> residuals = residuals_of(size.law.problem, size.law.solution.values, samples);
+  const auto left = of_those(residuals, seen);
   size.count = left.size();
   size.mean_square = std::pow(rms_of(left), 2);
   size.law.correlation_time = correlation_time(left);
+  const bool least_squares = samples.runs.size() == 1 && sized.loss == Loss::squares;
+  if (least_squares && least_held_out(residuals, samples, seen) >= enough) {
+    size.errors.fitted.rmse = std::numeric_limits<double>::infinity();
+    return size;
+  }
   size.errors = held_out(
       [&](const Weights& fewer) {
         return train_once(model, sized, count, samples, fewer, of_a_fold, memory);
@@ -160,7 +167,10 @@ Trained train_growing(std::string_view model, const FitOptions& options, const S
   for (std::size_t count = facts.first; count <= facts.last && failures < failures_borne; ++count) {
     FitOptions sized(options);
     sized.law_options[std::string(facts.option)] = static_cast<double>(count);
-    Size next = tried(model, sized, count, samples, seen, function_tolerance, memory);
+    const double enough = best && std::isfinite(best->errors.fitted.rmse)
+                              ? worth_one_more * best->errors.fitted.rmse
+                              : std::numeric_limits<double>::infinity();
+    Size next = tried(model, sized, count, samples, seen, function_tolerance, memory, enough);
     if (next.law.solution.values.empty()) return best ? best->law : next.law;
     const bool white = next.law.correlation_time < white_below;
     const bool better = !best || pays(next, *best);
