@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <deque>
 
 #include <kerf/drivers/velocity_filter.h>
 
@@ -24,35 +26,37 @@ RenderedSeries::RenderedSeries(const AxisSeries& series, double loop_rate_hz) {
   const double latency_s = 1.0 / loop_rate_hz;
   const double longest_s = std::max(missing_s, missing_rows * row_s);
   drivers::VelocityFilter filter;
-  std::vector<double> time_s;
   const double most = ticks_a_row * static_cast<double>(rows) + 1.0;  // of rows that are not far apart
   const double usual = rows > 1 ? (series.time_s.back() - series.time_s.front()) / period_s + 2.0 : 1.0;
   const auto ticks = static_cast<std::size_t>(std::min(most, usual));
   motion_.reserve(ticks);
   period_s_.reserve(ticks);
-  time_s.reserve(ticks);
+  tick_.reserve(rows);
+  double last_s = 0.0;
+  std::deque<double> not_yet_s;  // ticks whose command the rows so far have not felt
   const auto tick = [&](double now_s, double position) {
     motion_.push_back({.penetration = position, .velocity = filter.update(0, position, now_s)});
     filter.advance(now_s);
-    period_s_.push_back(time_s.empty() ? period_s : now_s - time_s.back());
-    time_s.push_back(now_s);
+    period_s_.push_back(period_s_.empty() ? period_s : now_s - last_s);
+    last_s = now_s;
+    not_yet_s.push_back(now_s);
+  };
+  const auto felt_at = [&](double now_s) {
+    while (!not_yet_s.empty() && not_yet_s.front() <= now_s - latency_s + 1e-9) not_yet_s.pop_front();
+    const std::size_t felt = motion_.size() - not_yet_s.size();
+    tick_.push_back(static_cast<std::uint32_t>(felt == 0 ? 0 : felt - 1));
   };
   for (std::size_t row = 0; row < rows; ++row) {
     const double now_s = series.time_s[row];
     if (row == 0 || now_s - series.time_s[row - 1] > longest_s) {
       tick(now_s, series.penetration[row]);
-      continue;
+    } else {
+      const double before_s = series.time_s[row - 1];
+      const double slope = (series.penetration[row] - series.penetration[row - 1]) / (now_s - before_s);
+      for (double next_s = last_s + period_s; next_s <= now_s + 1e-9; next_s = last_s + period_s)
+        tick(next_s, series.penetration[row - 1] + slope * (next_s - before_s));
     }
-    const double before_s = series.time_s[row - 1];
-    const double slope = (series.penetration[row] - series.penetration[row - 1]) / (now_s - before_s);
-    for (double next_s = time_s.back() + period_s; next_s <= now_s + 1e-9; next_s = time_s.back() + period_s)
-      tick(next_s, series.penetration[row - 1] + slope * (next_s - before_s));
-  }
-  tick_.reserve(rows);
-  std::size_t after = 0;  // the first tick that comes too late
-  for (const double now_s : series.time_s) {
-    while (after < time_s.size() && time_s[after] <= now_s - latency_s + 1e-9) ++after;
-    tick_.push_back(static_cast<std::uint32_t>(after == 0 ? 0 : after - 1));
+    felt_at(now_s);
   }
   // Laws keep what they derive from the period: equal but for rounding is equal.
   for (double& one : period_s_) {
