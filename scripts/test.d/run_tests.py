@@ -8,13 +8,15 @@ The very last line is "N passed, N failed, N skipped". Where a test is a whole s
 sanitizers), each of its cases counts, and is named, as a test of its own. Where the environment says CI=true a skip is a failure,
 unless tests/skips-allowed.txt names it with its reason. --totals appends "passed failed skipped" to a file, and a line for every
 test that failed: "failed NAME", and one where not all were run. --until (seconds since 1970) runs the tests in parts, each of them one in so many of all, and begins
-none that may not end in time.
+none that may not end in time. On CI, where others may use the machine, what failed is run once more, alone: one that then passes
+passed, and is named. Not where more than a few failed, nor what a sanitizer has found.
 
 Exit status: ctest's own; 1 if ctest passed and a skip was a failure; 124 if what was run passed, and not all was.
 """
 
 import argparse
 import fnmatch
+import math
 import os
 import re
 import signal
@@ -23,6 +25,7 @@ import sys
 import tempfile
 import time
 import xml.etree.ElementTree as ElementTree
+from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -33,6 +36,8 @@ SHOWN = 12
 LONGEST_LINE = 300
 
 PARTS = 12  # of tests that must end at a time
+MOST_AGAIN = 10  # tests that may have been disturbed; where more fail, something else is wrong
+NO_DISTURBANCE = re.compile(r"Sanitizer|runtime error:")
 TIME_IS_UP = 124  # as timeout(1) has it
 
 SAYS_NOTHING = "it says nothing"
@@ -105,11 +110,19 @@ def telling_lines(output: str) -> tuple[str, ...]:
     return tuple(line[:LONGEST_LINE] for line in lines[first:first + SHOWN])
 
 
-def outcome_of(junit: str) -> Outcome:
+def failed_in(junit: str) -> dict[str, bool]:
+    """Tests that failed, and whether the machine may be to blame."""
+    return {test.get("name", ""): not NO_DISTURBANCE.search(test.findtext("system-out") or "")
+            for test in ElementTree.fromstring(junit).iter("testcase") if test.get("status") == "fail"}
+
+
+def outcome_of(junit: str, left_out: Collection[str] = ()) -> Outcome:
     """Reads what `ctest --output-junit` writes. There, "notrun" is both a skip and a program that is missing."""
     outcome = Outcome(0, [], [])
     for test in ElementTree.fromstring(junit).iter("testcase"):
         name = test.get("name", "")
+        if name in left_out:
+            continue
         status = test.get("status")
         output = test.findtext("system-out") or ""
         skipped = test.find("skipped")
@@ -226,41 +239,60 @@ def run_parts(ctest: list[str], folder: Path, until: float, count: int) -> tuple
     return status, written, 0
 
 
+def run_again(ctest: list[str], folder: Path, tests: Collection[str]) -> tuple[int, str]:
+    """Runs these, one at a time. @returns ctest's status and what it wrote."""
+    written = folder / "again.xml"
+    print("\nOnce more, alone: " + ", ".join(tests), flush=True)
+    status = run_without_terminal([*ctest, "--output-junit", str(written), "--parallel", "1",
+                                   "--tests-regex", "^(" + "|".join(map(re.escape, tests)) + ")$"])
+    return status, written.read_text()
+
+
 def main(arguments: list[str]) -> int:
     own = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
     own.add_argument("--totals")
-    own.add_argument("--until", type=float)
+    own.add_argument("--until", type=float, default=math.inf)
     options, arguments = own.parse_known_args(arguments)
-    skip_is_failure = os.environ.get("CI", "").lower() in ("true", "1")
+    on_ci = os.environ.get("CI", "").lower() in ("true", "1")
     try:
-        allowances = read_allowances(ALLOWED.read_text()) if skip_is_failure else []
+        allowances = read_allowances(ALLOWED.read_text()) if on_ci else []
     except ValueError as problem:
         print(f"{ALLOWED}: {problem}", file=sys.stderr)
         return 2
+    notes = []
     with tempfile.TemporaryDirectory() as folder:
         # Of a passed test ctest keeps 1 KiB, and the skips within it may stand behind that.
         ctest = ["ctest", "--no-tests=error", "--test-output-size-passed", "10000000", *arguments]
-        written, not_run = [Path(folder) / "junit.xml"], 0
-        if options.until is not None and (count := count_of(ctest)):
-            status, written, not_run = run_parts(ctest, Path(folder), options.until, count)
+        files, not_run = [Path(folder) / "junit.xml"], 0
+        if math.isfinite(options.until) and (count := count_of(ctest)):
+            status, files, not_run = run_parts(ctest, Path(folder), options.until, count)
+            if not_run:
+                notes.append(f"The time was up: {not_run} of {count} tests were not run")
         else:
-            status = run_without_terminal([*ctest, "--output-junit", str(written[0])])
+            status = run_without_terminal([*ctest, "--output-junit", str(files[0])])
+        written = [file.read_text() for file in files if file.exists()]
+        failed = {name: disturbed for junit in written for name, disturbed in failed_in(junit).items()}
+        again = [name for name, disturbed in failed.items() if disturbed and on_ci and time.time() < options.until]
+        if len(failed) > MOST_AGAIN:
+            again = []
         outcome = Outcome(0, [], [])
-        for file in written:
-            if file.exists():
-                outcome.add(outcome_of(file.read_text()))
+        for junit in written:
+            outcome.add(outcome_of(junit, left_out=again))
+        if again:
+            status_again, junit = run_again(ctest, Path(folder), again)
+            outcome.add(outcome_of(junit))
+            if passed := [name for name in again if name not in failed_in(junit)]:
+                notes.append("Failed beside others, and passed alone: " + ", ".join(passed))
+            status = status if outcome.failures else status_again
     if outcome.passed + len(outcome.failures) + len(outcome.skips) + not_run == 0:  # `ctest --show-only` and the like
         return status
-    lines, passes = closing_lines(outcome, allowances, skip_is_failure)
-    late = f"The time was up: {not_run} of {count} tests were not run" if not_run else ""
+    lines, passes = closing_lines(outcome, allowances, on_ci)
     if options.totals:
         with open(options.totals, "a", encoding="utf-8") as file:
             file.write(f"{outcome.passed} {len(outcome.failures)} {len(outcome.skips)}\n")
             file.writelines(f"failed {failure.name}\n" for failure in outcome.failures)
-            file.write(late and f"{late}\n")
-    if late:
-        lines.insert(0, late)
-    print("\n" + "\n".join(lines), flush=True)
+            file.writelines(f"{note}\n" for note in notes)
+    print("\n" + "\n".join([*notes, *lines]), flush=True)
     if status or not passes:
         return status or 1
     return TIME_IS_UP if not_run else 0

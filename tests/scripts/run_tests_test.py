@@ -222,6 +222,25 @@ set_tests_properties(skips PROPERTIES SKIP_RETURN_CODE 77)
         self.assertNotEqual(status, 0)
         self.assertTrue(output.endswith("1 passed, 1 failed, 1 skipped\n"), output)
 
+    def test_pass_on_ci_where_what_failed_beside_others_passes_alone(self):
+        for says, status in (("too late", 0), ("AddressSanitizer: heap-use-after-free", 8)):
+            with tempfile.TemporaryDirectory() as folder:
+                once = Path(folder, "once.sh")
+                once.write_text(f'test -e {folder}/met && exit 0\ntouch {folder}/met\necho "{says}"\nexit 1\n')
+                Path(folder, "CTestTestfile.cmake").write_text(f'add_test(once sh "{once}")\nadd_test(passes true)\n')
+                for ci, expected in (("false", 8), ("true", status)):
+                    Path(folder, "met").unlink(missing_ok=True)
+                    ended, output = self.run_program("--test-dir", folder, "-R", "once|passes", ci=ci)
+                    self.assertEqual(ended, expected, output)
+                    self.assertEqual("Failed beside others, and passed alone: once\n" in output, expected == 0)
+                    self.assertIn(f"\n{2 if expected == 0 else 1} passed, {0 if expected == 0 else 1} failed, 0 skipped\n", output)
+
+    def test_fail_on_ci_what_fails_alone_too(self):
+        status, output = self.run_program("-E", "skips", ci="true")
+        self.assertNotEqual(status, 0)
+        self.assertIn("Once more, alone: fails\n", output)
+        self.assertTrue(output.endswith("\n1 passed, 1 failed, 0 skipped\n"), output)
+
     def test_fail_on_ci_where_a_test_is_skipped(self):
         self.assertEqual(self.run_program("-E", "fails", ci="true")[0], 1)
         self.assertEqual(self.run_program("-R", "passes", ci="true")[0], 0)
