@@ -98,7 +98,7 @@ template <std::size_t Packets>
     g[k] = all[k].g;
     h[k] = all[k].h;
   }
-  std::array<Pack, Packets> now_g, now_h;
+  std::array<Pack, Packets> now_g{}, now_h{};
   for (std::size_t p = 0; p < Packets; ++p) {
     now_g[p] = load(&g[p * lanes]);
     now_h[p] = load(&h[p * lanes]);

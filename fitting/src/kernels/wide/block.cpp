@@ -14,12 +14,12 @@ constexpr std::size_t place(std::size_t a, std::size_t b) { return a * (a + 1) /
 template <std::size_t Columns, typename Sum>
 [[gnu::always_inline]] inline void add_few(const Block& block, Sum& sum) {
   constexpr std::size_t all = Columns + 1;
-  std::array<Pack, all*(all + 1) / 2> total;
+  std::array<Pack, all*(all + 1) / 2> total{};
   for (std::size_t k = 0; k < total.size(); ++k) total[k] = load(sum[k].data());
   for (std::size_t i = 0; i < block.padded; i += lanes) {
     const Pack weight = load(&block.weight[i]);
     const Bits counts = weight != 0.0;
-    std::array<Pack, all> value;
+    std::array<Pack, all> value{};
     for (std::size_t a = 0; a < Columns; ++a) value[a] = where(counts, load(&block.column[a][i]));
     value[Columns] = where(counts, load(&block.force[i]) - load(&block.measured[i]));
     for (std::size_t a = 0; a < all; ++a) {
@@ -35,13 +35,13 @@ template <std::size_t Rows, std::size_t Together, typename Value, typename Sum>
 [[gnu::always_inline]] inline void add_together(const Block::Column* weighed, const Value& value,
                                                 std::size_t padded, std::size_t a, std::size_t first,
                                                 Sum& sum) {
-  std::array<Pack, Rows * Together> total;
+  std::array<Pack, Rows * Together> total{};
   for (std::size_t r = 0; r < Rows; ++r) {
     for (std::size_t b = 0; b < Together; ++b)
       total[r * Together + b] = load(sum[place(a + r, first + b)].data());
   }
   for (std::size_t i = 0; i < padded; i += lanes) {
-    std::array<Pack, Rows> one;
+    std::array<Pack, Rows> one{};
     for (std::size_t r = 0; r < Rows; ++r) one[r] = load(&weighed[r][i]);
     for (std::size_t b = 0; b < Together; ++b) {
       const Pack other = load(&value[first + b][i]);
@@ -66,8 +66,11 @@ template <std::size_t Rows, typename Value, typename Sum>
 /// Two columns at a time: what is loaded of others serves both.
 template <typename Sum>
 [[gnu::always_inline]] inline void add_many(const Block& block, std::size_t columns, Sum& sum) {
+  // NOLINTBEGIN(cppcoreguidelines-pro-type-member-init): filled below as far as they are read, a block at a
+  // time
   alignas(64) std::array<Block::Column, Block::most_columns + 1> value;
   alignas(64) std::array<Block::Column, 2> weighed;
+  // NOLINTEND(cppcoreguidelines-pro-type-member-init)
   for (std::size_t i = 0; i < block.padded; i += lanes) {
     const Bits counts = load(&block.weight[i]) != 0.0;
     for (std::size_t a = 0; a < columns; ++a) store(&value[a][i], where(counts, load(&block.column[a][i])));
@@ -190,11 +193,11 @@ Sums Products::sums() const {
             .score = Eigen::VectorXd(count),
             .normal = Eigen::MatrixXd(count, count)};
   for (std::size_t a = 0; a < columns_; ++a) {
-    const auto row = static_cast<Eigen::Index>(a);
-    sums.score[row] = of(columns_, a);
+    const auto i = static_cast<Eigen::Index>(a);
+    sums.score[i] = of(columns_, a);
     for (std::size_t b = 0; b <= a; ++b) {
-      const auto column = static_cast<Eigen::Index>(b);
-      sums.normal(row, column) = sums.normal(column, row) = of(a, b);
+      const auto j = static_cast<Eigen::Index>(b);
+      sums.normal(i, j) = sums.normal(j, i) = of(a, b);
     }
   }
   return sums;

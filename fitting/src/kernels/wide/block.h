@@ -12,7 +12,7 @@ namespace kerf::fitting::wide {
 /// A stretch of a run in columns, and what a law gives along it: its force, and columns of which the
 /// derivatives by its parameters are sums. It ends with the last row again, which counts for nothing, where
 /// it is no multiple of a packet.
-struct Block {
+struct Block {  // NOLINT(cppcoreguidelines-pro-type-member-init): filled by take(), and by a law
   static constexpr std::size_t most_rows = 256;
   static constexpr std::size_t most_columns = 13;
   using Column = std::array<double, most_rows>;
