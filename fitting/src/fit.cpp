@@ -70,10 +70,8 @@ void measure_rendered(FitResult& result, const std::vector<double>& residuals, c
 
 /// A sensor at the end of its range repeats its largest number.
 void warn_of_the_sensor(FitResult& result, const Samples& samples, const std::string& unit) {
-  double most = 0.0;
-  for (const double force : samples.force) most = std::max(most, std::abs(force));
   const double largest =
-      *std::ranges::find(samples.force, most, [](double force) { return std::abs(force); });
+      *std::ranges::find(samples.force, samples.largest_force, [](double force) { return std::abs(force); });
   std::size_t longest = 0;
   std::size_t count = 0;
   std::size_t row = 0;
@@ -100,8 +98,7 @@ void warn_of_a_misfit(FitResult& result) {
 /// What a law that only pushes leaves of a force that pulls is no noise.
 void warn_of_pulling(FitResult& result, const std::vector<double>& residuals, const Samples& samples) {
   constexpr double noteworthy = 0.01;  // of the samples, and of the largest force
-  double largest = 0.0;
-  for (const double force : samples.force) largest = std::max(largest, std::abs(force));
+  const double largest = samples.largest_force;
   std::size_t pulling = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (residuals[i] + samples.force[i] < -1e-9 * largest) return;

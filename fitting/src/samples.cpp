@@ -22,7 +22,8 @@ void check_finite(std::span<const double> values, const char* name) {
 }
 
 /// What a sensor that is stuck gives, and one that failed once: no law is told by them.
-void check_force(std::span<const double> force) {
+/// @returns the largest, either way
+double check_force(std::span<const double> force) {
   constexpr std::size_t enough = 20;  // samples, of which one has no business to be more than all others
   if (std::ranges::all_of(force, [&](double one) { return one == force.front(); })) {
     if (force.front() == 0.0) refuse("the force is zero throughout");
@@ -31,16 +32,21 @@ void check_force(std::span<const double> force) {
     refuse(reason.str());
   }
   double squares = 0.0;
-  for (const double one : force) squares += one * one;
-  const auto largest = std::ranges::max_element(force, {}, [](double one) { return std::abs(one); });
-  if (force.size() < enough || 2.0 * *largest * *largest <= squares) return;
+  double largest = 0.0;
+  for (const double one : force) {
+    squares += one * one;
+    largest = std::max(largest, std::abs(one));
+  }
+  if (force.size() < enough || 2.0 * largest * largest <= squares) return largest;
+  const auto first = std::ranges::find(force, largest, [](double one) { return std::abs(one); });
   std::ostringstream reason;
-  reason << "the force of sample " << largest - force.begin() << ", " << *largest
+  reason << "the force of sample " << first - force.begin() << ", " << *first
          << ", has more squares than all others together: leave it out";
   refuse(reason.str());
 }
 
-void check_columns(const Series& series) {
+/// @returns the largest force, either way
+double check_columns(const Series& series) {
   const std::size_t count = series.force.size();
   if (series.time_s.size() != count || series.penetration.size() != count ||
       series.velocity.size() != count || (!series.cycle.empty() && series.cycle.size() != count) ||
@@ -52,10 +58,11 @@ void check_columns(const Series& series) {
   check_finite(series.penetration, "penetration");
   check_finite(series.velocity, "velocity");
   check_finite(series.force, "force");
-  check_force(series.force);
+  const double largest = check_force(series.force);
   if (!(series.noise_n >= 0.0) || !std::isfinite(series.noise_n)) {
     refuse("the noise of a recording must be a positive number, or 0 where it is not known");
   }
+  return largest;
 }
 
 std::vector<double> periods(std::span<const double> time_s, double& median_period_s) {
@@ -136,7 +143,7 @@ Samples check_series(std::span<const Series> recordings, const FoldOptions& opti
   }
   Samples samples;
   for (const Series& series : recordings) {
-    check_columns(series);
+    samples.largest_force = std::max(samples.largest_force, check_columns(series));
     const Run run{
         .begin = samples.size(), .end = samples.size() + series.force.size(), .noise_n = series.noise_n};
     double median_period_s = 0.0;
@@ -174,6 +181,7 @@ Samples thinned(const Samples& samples, std::size_t count) {
   Samples few{.folds = samples.folds,
               .least = samples.least,
               .most = samples.most,
+              .largest_force = samples.largest_force,
               .median_period_s = samples.median_period_s,
               .duration_s = samples.duration_s,
               .has_cycles = samples.has_cycles};

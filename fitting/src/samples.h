@@ -26,8 +26,9 @@ struct Samples {
   std::vector<std::uint32_t> fold;   ///< held out in that fold of the cross-validation; no_fold: never
   std::vector<Run> runs;
   std::size_t folds = 0;
-  double least = 0.0;  ///< smallest penetration
-  double most = 0.0;   ///< largest penetration
+  double least = 0.0;          ///< smallest penetration
+  double most = 0.0;           ///< largest penetration
+  double largest_force = 0.0;  ///< either way
   double median_period_s = 0.0;
   double duration_s = 0.0;  ///< of the longest run
   bool has_cycles = false;
