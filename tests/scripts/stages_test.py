@@ -31,10 +31,12 @@ class Stages(unittest.TestCase):
             return done.returncode, done.stdout
 
     def test_of_clang_run_where_there_is_time(self):
-        for minutes in (None, 88):
-            status, said = self.run_stages(minutes)
+        says = {"test.d/run_tests.py": 'echo "ran $*"'}
+        for minutes, until in ((None, ""), (88, "--until [0-9]+ ")):
+            status, said = self.run_stages(minutes, instead=says)
             self.assertEqual(status, 0)
             self.assertRegex(said, "Clang, sanitizers: tests +passed")
+            self.assertRegex(said, f"ran --totals [^ ]+ {until}--preset dev")
             self.assertNotIn("Clang: all of it", said)
 
     def test_of_clang_are_left_out_and_named_where_there_is_none(self):
