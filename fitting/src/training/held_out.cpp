@@ -85,13 +85,10 @@ HeldOut held_out(const std::function<Trained(const Weights& seen)>& train_on, co
 }
 
 double least_held_out(const std::vector<double>& residuals, const Samples& samples, const Weights& weights) {
-  Share all;
-  for (std::size_t i = 0; i < residuals.size(); ++i) {
-    if (!shown(samples, weights, i)) continue;
-    all.squares += residuals[i] * residuals[i];
-    all.count += 1.0;
-  }
-  return std::sqrt(all.squares / all.count);
+  std::vector<Share> shares;
+  for (const std::size_t fold : folds_in(samples, weights))
+    shares.push_back(judged(residuals, samples, weights, fold));
+  return together(shares).rmse;
 }
 
 Paired paired(const std::vector<double>& folds, const std::vector<double>& others) {
