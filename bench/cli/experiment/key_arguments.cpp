@@ -10,6 +10,8 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include "program/standard_streams.h"
+
 namespace kerf::bench {
 namespace {
 
@@ -72,6 +74,7 @@ void take_back(std::string& text) {
 std::string ask(std::string_view prompt) {
   constexpr std::string_view leaves("\3\4");  // Ctrl-C, Ctrl-D
   const Terminal terminal;
+  let_lines_out();  // a warning before the question, not behind it
   const WithoutEcho silent(terminal.number());
   terminal.say(fmt::format("{}: ", prompt));
   std::string text;

@@ -37,8 +37,10 @@ void write_error_text(std::string_view text) noexcept { writer().write(STDERR_FI
 
 void draw_error_text(std::string_view text) noexcept { writer().draw(STDERR_FILENO, text); }
 
+void let_lines_out() noexcept { static_cast<void>(writer().wait(while_a_line_is_written)); }
+
 std::vector<std::string> unprinted_errors() {
-  static_cast<void>(writer().wait(while_a_line_is_written));
+  let_lines_out();
   std::vector<std::string> lines = writer().unwritten(STDERR_FILENO);
   for (std::string& line : lines) {
     if (line.ends_with('\n')) line.pop_back();

@@ -20,6 +20,10 @@ void write_error_text(std::string_view text) noexcept;
 /// To standard error, what is drawn again and again: dropped where something older still waits.
 void draw_error_text(std::string_view text) noexcept;
 
+/// Waits for as long as a line takes until what was given is written: before something else writes to the
+/// same terminal.
+void let_lines_out() noexcept;
+
 /// What write_error_text() was given and could not be written, or has waited for a while.
 [[nodiscard]] std::vector<std::string> unprinted_errors();
 
