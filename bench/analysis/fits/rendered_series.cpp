@@ -1,9 +1,11 @@
 #include "fits/rendered_series.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <deque>
+#include <span>
 
 #include <kerf/drivers/velocity_filter.h>
 
@@ -62,13 +64,26 @@ RenderedSeries::RenderedSeries(const AxisSeries& series, double loop_rate_hz) {
   for (double& one : period_s_) {
     if (std::abs(one - period_s) < 1e-6 * period_s) one = period_s;
   }
+  const bool even = std::ranges::all_of(period_s_, [&](double one) { return one == period_s; });
+  if (even) period_s_ = std::vector<double>{period_s};
 }
 
 std::vector<double> RenderedSeries::force(const models::Law& law) const {
-  const std::vector<double> of_ticks = law.along(motion_, period_s_);
   std::vector<double> of_rows;
   of_rows.reserve(tick_.size());
-  for (const std::uint32_t tick : tick_) of_rows.push_back(of_ticks[tick]);
+  std::array<double, 4096> of_ticks;  // at once: all would be one column more
+  models::Law::State state = law.initial_state();
+  for (std::size_t begin = 0; begin < motion_.size(); begin += of_ticks.size()) {
+    const std::size_t count = std::min(of_ticks.size(), motion_.size() - begin);
+    const std::span<const double> periods(period_s_);
+    law.steps(state, std::span(motion_).subspan(begin, count),
+              periods.size() == 1 ? periods : periods.subspan(begin, count),
+              std::span(of_ticks).first(count));
+    for (; of_rows.size() < tick_.size() && tick_[of_rows.size()] < begin + count;) {
+      const double force = of_ticks[tick_[of_rows.size()] - begin];
+      of_rows.push_back(std::isnan(force) ? 0.0 : force);  // as step() faults
+    }
+  }
   return of_rows;
 }
 

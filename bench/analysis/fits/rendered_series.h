@@ -23,8 +23,8 @@ class RenderedSeries {
 
  private:
   std::vector<models::Motion> motion_;
-  std::vector<double> period_s_;
-  std::vector<std::uint32_t> tick_;  ///< whose force acts at each row
+  std::vector<double> period_s_;     ///< one for all ticks, or one each
+  std::vector<std::uint32_t> tick_;  ///< whose force acts at each row, none before that of the row before
 };
 
 }  // namespace kerf::bench
