@@ -12,7 +12,7 @@ namespace {
 
 /// By how much of the sum of squares it rises from the middle of a neighbourhood to its border.
 constexpr double neighbourhoods[] = {1e-5, 1e-6, 1e-7, 1e-8};
-constexpr int most_steps = 4;  ///< in each of them
+constexpr int most_steps_around = 4;  ///< in each of them
 /// What tells a kink from a minimum: by how much the sum of squares rises more on one side than on the other,
 /// over what it rises; or how much lower it is beside it.
 constexpr double uneven = 0.01;
@@ -48,7 +48,7 @@ class KinkSearch {
   /// False where there is nothing to step over.
   [[nodiscard]] bool step_in(double neighbourhood) {
     const double begun = best_.sums.squares;
-    for (int i = 0; i < most_steps; ++i) {
+    for (int i = 0; i < most_steps_around; ++i) {
       const double before = best_.sums.squares;
       const Eigen::VectorXd middle = best_.at;
       const Eigen::MatrixXd axes = axes_of(best_.sums, neighbourhood);

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include <Eigen/Eigenvalues>
-#include <boost/math/statistics/univariate_statistics.hpp>
 
 #include "infinite.h"
 #include "least_squares.h"
@@ -37,7 +36,7 @@ double deviation_of(const std::vector<Vector6d>& residuals, Eigen::Index axis, b
   }
   std::vector<double> sizes;
   for (const Vector6d& r : residuals) sizes.push_back(std::abs(r[axis]));
-  return 1.4826 * boost::math::statistics::median(sizes);
+  return robust_deviation(std::move(sizes));
 }
 
 /// The noise of each axis: that given, else from residuals, and never so small against the force that

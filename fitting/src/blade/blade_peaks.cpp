@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <boost/math/statistics/univariate_statistics.hpp>
+#include "uncertainty/statistics.h"
 
 namespace kerf::fitting {
 namespace {
@@ -79,7 +79,7 @@ Vector6d noise_of(const BladeRows& rows, const BladeFitOptions& options) {
     }
     if (sizes.empty()) continue;
     // 20 = 1 + 9 + 9 + 1; and no force is known better than to a thousandth.
-    noise[axis] = std::max(1.4826 * boost::math::statistics::median(sizes) / std::sqrt(20.0), 1e-3 * largest);
+    noise[axis] = std::max(robust_deviation(sizes) / std::sqrt(20.0), 1e-3 * largest);
   }
   for (Eigen::Index axis = 0; axis < 6; ++axis) {
     const double given = options.noise[static_cast<std::size_t>(axis)];

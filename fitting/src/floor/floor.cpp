@@ -13,13 +13,13 @@
 #include "floor/force_map.h"
 #include "kerf/fitting/checked_recordings.h"
 #include "samples.h"
+#include "uncertainty/statistics.h"
 
 namespace kerf::fitting {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr std::size_t most_samples = 50000;  ///< more say nothing that these do not
-constexpr double deviation_of_mad = 1.4826;
 constexpr std::array<std::size_t, 6> curve_bins{8, 16, 32, 64, 128, 256};
 constexpr std::array<std::size_t, 3> surface_bins{4, 8, 16};
 
@@ -144,7 +144,7 @@ double noise_of_rows(const Samples& samples) {
     for (std::size_t i = run.begin + 2; i < run.end; ++i)
       sizes.push_back(std::abs(samples.force[i] - 2.0 * samples.force[i - 1] + samples.force[i - 2]));
   }
-  return sizes.empty() ? 0.0 : deviation_of_mad * boost::math::statistics::median(sizes) / std::sqrt(6.0);
+  return robust_deviation(std::move(sizes)) / std::sqrt(6.0);
 }
 
 double squared(double value) { return value * value; }

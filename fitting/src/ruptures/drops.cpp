@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
+
+#include "uncertainty/statistics.h"
 
 namespace kerf::fitting {
 namespace {
@@ -18,7 +22,6 @@ std::size_t rows_of_a_drop(const Samples& samples) {
 
 /// Standard deviation of noise from row to row, by what a straight line through three rows leaves.
 double noise_of_rows(const Samples& samples, const Weights& weights) {
-  constexpr double deviation_of_mad = 1.4826;
   std::vector<double> bends;
   for (const Run& run : samples.runs) {
     for (std::size_t i = run.begin + 1; i + 1 < run.end; ++i) {
@@ -26,10 +29,7 @@ double noise_of_rows(const Samples& samples, const Weights& weights) {
         bends.push_back(std::abs(samples.force[i - 1] - 2.0 * samples.force[i] + samples.force[i + 1]));
     }
   }
-  if (bends.empty()) return 0.0;
-  const auto middle = bends.begin() + static_cast<std::ptrdiff_t>(bends.size() / 2);
-  std::nth_element(bends.begin(), middle, bends.end());
-  return deviation_of_mad * *middle / std::sqrt(6.0);
+  return robust_deviation(std::move(bends)) / std::sqrt(6.0);
 }
 
 /// By how much the force is less in the 20 ms from a row on than in those before it, on average.

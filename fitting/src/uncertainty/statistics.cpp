@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include <boost/math/distributions/students_t.hpp>
+#include <boost/math/statistics/univariate_statistics.hpp>
 #include <unsupported/Eigen/FFT>
 
 namespace kerf::fitting {
@@ -53,6 +54,11 @@ double two_sided_p(double deviation, double degrees_of_freedom) {
   if (std::isinf(deviation)) return 0.0;
   const boost::math::students_t distribution(std::max(1.0, degrees_of_freedom));
   return 2.0 * boost::math::cdf(boost::math::complement(distribution, std::abs(deviation)));
+}
+
+double robust_deviation(std::vector<double> sizes) {
+  constexpr double deviation_of_median = 1.4826;
+  return sizes.empty() ? 0.0 : deviation_of_median * boost::math::statistics::median(sizes);
 }
 
 }  // namespace kerf::fitting
