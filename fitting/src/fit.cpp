@@ -6,6 +6,7 @@
 #include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "kerf/fitting/checked_recordings.h"
 #include "samples.h"
@@ -120,8 +121,8 @@ void cross_validate(FitResult& result, const FitOptions& options, const Samples&
   if (samples.folds < 2) return;
   FitOptions alone(options);
   alone.threads = 1;  // the folds are shared out already
-  const auto train_on = [&](const Weights& seen) {
-    Trained law = train(result.model, alone, samples, seen, of_a_fold, &memory);
+  const auto train_on = [&](Weights seen) {
+    Trained law = train(result.model, alone, samples, std::move(seen), of_a_fold, &memory);
     tell_a_part(options);
     return law;
   };
@@ -147,7 +148,7 @@ void measure(FitResult& result, const Trained& law, const Samples& samples, cons
 
 FitResult fit_samples(std::string_view model, const Samples& samples, const FitOptions& options) {
   TrainedMemory memory;
-  const Trained law =
+  Trained law =
       train(model, options, samples, all_of(samples), options.brief ? of_a_fold : of_a_law, &memory);
   FitResult result{.model = std::string(model), .law_options = law.problem.law_options};
   result.free_parameters = static_cast<std::size_t>(law.problem.coordinates());
@@ -164,6 +165,7 @@ FitResult fit_samples(std::string_view model, const Samples& samples, const FitO
   tell_a_part(options);
   measure(result, law, samples, options);
   estimate_parameters(result, law.problem, samples, law.weights, law.solution, options, law.loss);
+  Weights().swap(law.weights);  // of very many samples each column tells
   tell_a_part(options);
   // A valley without an end, and all of it as good.
   if (!result.converged && result.undetermined_arms + result.undetermined_directions > 0) {

@@ -12,6 +12,7 @@
 
 namespace kerf::fitting {
 
+class ArmMemory;
 class SegmentedMemory;
 
 /// What is searched: a law's parameters, some of them held, some of them each recording's own.
@@ -26,6 +27,7 @@ struct Problem {
   std::size_t points_per_segment = 4;
   Polish polish = Polish::thorough;  ///< of curves of segments
   std::shared_ptr<SegmentedMemory> segmented_memory{};
+  std::shared_ptr<ArmMemory> arm_memory{};  ///< of these samples; none: sums are made anew each time
 
   [[nodiscard]] const models::LawFacts& facts() const { return models::law_facts(model); }
   /// How many numbers are searched: one a free parameter, or one a recording where it is its own.

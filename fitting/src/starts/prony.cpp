@@ -19,13 +19,35 @@ struct Dictionary {
   double squares = 0.0;
 };
 
+std::vector<double> times_over(const Decades& decades) {
+  std::vector<double> all;
+  for (std::size_t i = 0; i < times; ++i) {
+    const double share = static_cast<double>(i) / (times - 1);
+    all.push_back(decades.shortest_s * std::pow(decades.longest_s / decades.shortest_s, share));
+  }
+  return all;
+}
+
+Dictionary dictionary_of(const Samples& samples, const ArmProducts& products) {
+  Dictionary all;
+  all.time_s = times_over(decades_of(samples));
+  const Eigen::Index terms = products.series.terms();
+  Eigen::MatrixXd to_times = Eigen::MatrixXd::Zero(1 + static_cast<Eigen::Index>(times), 1 + terms);
+  to_times(0, 0) = 1.0;
+  for (std::size_t i = 0; i < times; ++i) {
+    to_times.row(1 + static_cast<Eigen::Index>(i)).tail(terms) =
+        products.series.at(std::log(all.time_s[i])).value;
+  }
+  all.normal = to_times * products.normal * to_times.transpose();
+  all.right = to_times * products.right;
+  all.squares = products.squares;
+  return all;
+}
+
+/// The same of the law itself, which lets go where an arm and the spring would pull.
 Dictionary dictionary_of(std::string_view model, const Samples& samples, const Weights& weights) {
   Dictionary all;
-  const double shortest = 2.0 * samples.median_period_s;
-  const double longest = std::max(2.0 * samples.duration_s, 8.0 * shortest);
-  for (std::size_t i = 0; i < times; ++i) {
-    all.time_s.push_back(shortest * std::pow(longest / shortest, static_cast<double>(i) / (times - 1)));
-  }
+  all.time_s = times_over(decades_of(samples));
   const auto rows = static_cast<Eigen::Index>(samples.size());
   Eigen::MatrixXd columns(rows, static_cast<Eigen::Index>(times) + 1);
   Eigen::VectorXd force(rows);
@@ -62,11 +84,8 @@ double left_by(const Dictionary& dictionary, const std::vector<Eigen::Index>& pl
   return dictionary.squares - 2.0 * springs.dot(right) + springs.dot(normal * springs);
 }
 
-}  // namespace
-
-std::vector<LinearFamily> prony_families(const Problem& problem, const Samples& samples,
-                                         const Weights& weights) {
-  const Dictionary dictionary = dictionary_of(problem.model, samples, weights);
+/// The families of the best sets of times.
+std::vector<LinearFamily> best_of(const Problem& problem, const Dictionary& dictionary) {
   const std::size_t arms = (problem.parameters.size() - 1) / 2;
   struct Set {
     std::vector<Eigen::Index> places;
@@ -106,6 +125,18 @@ std::vector<LinearFamily> prony_families(const Problem& problem, const Samples& 
     families.push_back(family_of(problem, values, linear));
   }
   return families;
+}
+
+}  // namespace
+
+std::vector<LinearFamily> prony_families(const Problem& problem, const Samples& samples,
+                                         const ArmProducts& products) {
+  return best_of(problem, dictionary_of(samples, products));
+}
+
+std::vector<LinearFamily> prony_families(const Problem& problem, const Samples& samples,
+                                         const Weights& weights) {
+  return best_of(problem, dictionary_of(problem.model, samples, weights));
 }
 
 }  // namespace kerf::fitting

@@ -141,22 +141,32 @@ LinearFamily family_of(const Problem& problem, const std::vector<double>& values
 
 Start best_of_family(const Problem& problem, const Samples& samples, const Weights& weights,
                      const LinearFamily& family) {
+  const auto sums_at = [&](const std::vector<double>& values, Sums& all) {
+    const std::vector<double> slope(values.size(), 1.0);
+    const LawPoint point{.values = values, .slope = slope, .options = problem.law_options};
+    all = {.squares = 0.0,
+           .score = Eigen::VectorXd::Zero(family.base.size()),
+           .normal = Eigen::MatrixXd::Zero(family.base.size(), family.base.size())};
+    for (std::size_t run = 0; run < samples.runs.size(); ++run) {
+      Sums part;
+      if (!kernel_of(problem.model).sums(point, view_of(samples, weights, run), {}, part)) return false;
+      all.squares += part.squares;
+      all.score += part.score;
+      all.normal += part.normal;
+    }
+    return true;
+  };
+  return best_of_family(problem, family, sums_at);
+}
+
+Start best_of_family(const Problem& problem, const LinearFamily& family,
+                     const std::function<bool(const std::vector<double>& values, Sums& sums)>& sums_at) {
   const Eigen::VectorXd ones = Eigen::VectorXd::Ones(family.directions.cols());
   const Eigen::VectorXd unit = family.base + family.directions * ones;
   const std::vector<double> values(unit.begin(), unit.end());
-  const std::vector<double> slope(values.size(), 1.0);
-  const LawPoint point{.values = values, .slope = slope, .options = problem.law_options};
   Start start{.values = {}, .sum_of_squares = std::numeric_limits<double>::infinity()};
-  Sums all{.squares = 0.0,
-           .score = Eigen::VectorXd::Zero(unit.size()),
-           .normal = Eigen::MatrixXd::Zero(unit.size(), unit.size())};
-  for (std::size_t run = 0; run < samples.runs.size(); ++run) {
-    Sums part;
-    if (!kernel_of(problem.model).sums(point, view_of(samples, weights, run), {}, part)) return start;
-    all.squares += part.squares;
-    all.score += part.score;
-    all.normal += part.normal;
-  }
+  Sums all;
+  if (!sums_at(values, all)) return start;
   if (!all.normal.allFinite() || !all.score.allFinite()) return start;
   if (ones.size() == 0) return {.values = values, .sum_of_squares = all.squares};
   const Eigen::MatrixXd normal = family.directions.transpose() * all.normal * family.directions;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "problem.h"
@@ -22,6 +23,10 @@ struct Start {
 /// The best member of a family, by linear least squares on the law's own step.
 [[nodiscard]] Start best_of_family(const Problem& problem, const Samples& samples, const Weights& weights,
                                    const LinearFamily& family);
+/// The same by sums for the law at any values, with a column for each parameter; false: there is none.
+[[nodiscard]] Start best_of_family(
+    const Problem& problem, const LinearFamily& family,
+    const std::function<bool(const std::vector<double>& values, Sums& sums)>& sums_at);
 
 /// The family of all parameters that are named linear, the others held at these values.
 [[nodiscard]] LinearFamily family_of(const Problem& problem, const std::vector<double>& values,

@@ -9,6 +9,8 @@
 #include "fracture/fracture_fit.h"
 #include "ruptures/rupture_fit.h"
 #include "segmented/segmented_law.h"
+#include "starts/arm_search.h"
+#include "starts/arm_sums.h"
 #include "starts/scan.h"
 #include "starts/threshold.h"
 #include "tables.h"
@@ -16,10 +18,7 @@
 namespace kerf::fitting {
 namespace {
 
-/// A law that follows the motion at once is as well known from few samples as from all; one with a memory is
-/// not, whose shortest times would fall between them.
 constexpr std::size_t thinned_samples = 2000;
-constexpr std::size_t thinned_with_memory = 50'000;
 
 constexpr int max_iterations = 2000;
 
@@ -41,25 +40,16 @@ Solution solve_from(const Problem& problem, const Samples& samples, const Weight
           .normal = minimum.sums.normal};
 }
 
-double squares_at(const Problem& problem, const Samples& samples, const Weights& weights,
-                  const Values& values) {
-  const auto force = rendered(problem, values, samples);
-  double squares = 0.0;
-  for (std::size_t i = 0; i < force.size(); ++i) {
-    squares += weights[i] * (force[i] - samples.force[i]) * (force[i] - samples.force[i]);
-  }
-  return squares;
-}
-
 /// The best end of several starts.
-Solution begin_on(const Problem& problem, const Samples& few, const Weights& light) {
+Solution begin_on(const Problem& problem, const Samples& few, const Weights& light,
+                  const std::vector<std::vector<double>>& starts) {
   Solution best;
   best.message = "the data offer no start for a search";
   double least = 0.0;
   int iterations = 0;
-  for (const auto& start : starts_of(problem, few, light)) {
+  for (const auto& start : starts) {
     // A start this far above an end already found is not tried.
-    if (!best.values.empty() && squares_at(problem, few, light, for_all_runs(problem, start)) > 10.0 * least)
+    if (!best.values.empty() && squares_of(problem, few, light, for_all_runs(problem, start)) > 10.0 * least)
       break;
     Solution solution = solve_from(problem, few, light, for_all_runs(problem, start),
                                    {.loss = {}, .function_tolerance = 1e-7});
@@ -73,13 +63,52 @@ Solution begin_on(const Problem& problem, const Samples& few, const Weights& lig
   return best;
 }
 
-/// The same on a thinned series, which is where a search of all samples begins.
+/// On a thinned series, which is where a search of all samples begins: a law that follows the motion at once
+/// is as well known from few samples as from all.
 Solution begin_on_few(const Problem& problem, const Samples& samples, const Weights& weights) {
-  const bool has_memory = problem.facts().scan.over == models::Scan::prony;
-  const std::size_t enough = has_memory ? thinned_with_memory : thinned_samples;
-  if (samples.size() < 2 * enough) return begin_on(problem, samples, weights);
-  const Samples few = thinned(samples, enough);
-  return begin_on(problem, few, thinned_weights(samples, weights, few));
+  if (samples.size() < 2 * thinned_samples)
+    return begin_on(problem, samples, weights, starts_of(problem, samples, weights));
+  const Samples few = thinned(samples, thinned_samples);
+  const Weights light = thinned_weights(samples, weights, few);
+  return begin_on(problem, few, light, starts_of(problem, few, light));
+}
+
+/// Where the sums of arms are least, if they are sure; else the best end from there and the starts of the law
+/// itself.
+Solution begin_by_sums(const Problem& problem, const Samples& few, const Weights& light, const ArmSums& sums,
+                       const LetGo& expected, double function_tolerance, bool from_every_start) {
+  LeastSums by_sums = least_by_sums(problem, few, light, sums, expected, function_tolerance);
+  if (by_sums.sure && !from_every_start) return *std::move(by_sums.least);
+  std::vector<std::vector<double>> starts = starts_of(problem, few, light);
+  if (by_sums.least) starts.insert(starts.begin(), by_sums.least->values[0]);
+  return begin_on(problem, few, light, starts);
+}
+
+/// The same of a law with a memory, which is not as well known from few samples: its shortest times would
+/// fall between them. Shown all of them it is looked for from every start; shown some folds less it lets go
+/// nearly where it does then.
+Solution begin_with_arms(const Problem& problem, const Samples& samples, const Weights& weights,
+                         double function_tolerance) {
+  if (std::ranges::find(problem.own, true) != problem.own.end()) {
+    const Samples few = thinned(samples, enough_for_arms);
+    const Weights light = thinned_weights(samples, weights, few);
+    return begin_on(problem, few, light, starts_of(problem, few, light));
+  }
+  const std::size_t arms = problem.parameters.size() / 2;
+  const auto memory = problem.arm_memory ? problem.arm_memory : std::make_shared<ArmMemory>();
+  const auto& [few, sums] = memory->once([&] {
+    Samples those = thinned(samples, enough_for_arms);
+    const Weights all = all_of(those);
+    ArmSums made(problem, those, all, slack(problem, those));
+    const LeastSums first = least_by_sums(problem, those, all, made, made.expected(), function_tolerance);
+    if (first.least) made.expect(let_go_of(problem, those, first.least->values[0]));
+    return ArmSamples{.few = std::move(those), .sums = std::move(made)};
+  });
+  const Weights light = thinned_weights(samples, weights, few);
+  const bool all = light == all_of(few);
+  Solution begun = begin_by_sums(problem, few, light, sums, memory->expected(arms), function_tolerance, all);
+  if (all && !begun.values.empty()) memory->expect(arms, let_go_of(problem, few, begun.values[0]));
+  return begun;
 }
 
 /// @throws std::invalid_argument for a name that is no parameter of the law.
@@ -129,6 +158,16 @@ void hold(Problem& problem, std::string_view name) {
 }
 
 }  // namespace
+
+double squares_of(const Problem& problem, const Samples& samples, const Weights& weights,
+                  const Values& values) {
+  const auto force = rendered(problem, values, samples);
+  double squares = 0.0;
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    squares += weights[i] * (force[i] - samples.force[i]) * (force[i] - samples.force[i]);
+  }
+  return squares;
+}
 
 Problem make_problem(std::string_view model, const FitOptions& given, const Samples& samples,
                      const Weights& seen, Polish polish) {
@@ -189,7 +228,9 @@ Solution search(const Problem& problem, const Samples& samples, const Weights& w
       break;
   }
   if (!near.empty()) return solve_from(problem, samples, weights, near, options);
-  Solution start = begin_on_few(problem, samples, weights);
+  const bool has_arms = problem.facts().scan.over == models::Scan::prony;
+  Solution start = has_arms ? begin_with_arms(problem, samples, weights, options.function_tolerance)
+                            : begin_on_few(problem, samples, weights);
   if (start.values.empty()) return start;
   Solution solution = solve_from(problem, samples, weights, start.values, options);
   solution.iterations += start.iterations;

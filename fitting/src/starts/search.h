@@ -30,6 +30,10 @@ struct SearchOptions {
   double function_tolerance = 1e-12;
 };
 
+/// What a law of these values leaves of weighed samples [N2].
+[[nodiscard]] double squares_of(const Problem& problem, const Samples& samples, const Weights& weights,
+                                const Values& values);
+
 /// Finds the best parameters for weighed samples. `near` is a solution to begin at (of other weights), or
 /// empty.
 [[nodiscard]] Solution search(const Problem& problem, const Samples& samples, const Weights& weights,

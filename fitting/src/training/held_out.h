@@ -21,8 +21,8 @@ struct HeldOut {
 
 /// Trains on all samples of positive weight but those of one fold, and judges by these, fold by fold.
 /// Nothing where fewer than two folds are left.
-[[nodiscard]] HeldOut held_out(const std::function<Trained(const Weights& seen)>& train_on,
-                               const Samples& samples, const Weights& weights, std::size_t threads,
+[[nodiscard]] HeldOut held_out(const std::function<Trained(Weights seen)>& train_on, const Samples& samples,
+                               const Weights& weights, std::size_t threads,
                                const decltype(FitOptions::render)& render = {});
 
 /// Root mean square of the samples that held_out() would judge by; NaN if there are none. Where both are

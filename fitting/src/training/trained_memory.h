@@ -3,10 +3,12 @@
 #include <cstddef>
 #include <functional>
 #include <list>
+#include <memory>
 #include <mutex>
 #include <utility>
 #include <vector>
 
+#include "starts/arm_sums.h"
 #include "training/training.h"
 
 namespace kerf::fitting {
@@ -21,6 +23,8 @@ class TrainedMemory {
   /// for.
   [[nodiscard]] Trained once(const Weights& seen, std::size_t size, double function_tolerance,
                              const std::function<Trained()>& train);
+  /// Sums of arms over these samples.
+  [[nodiscard]] const std::shared_ptr<ArmMemory>& arms() const { return arms_; }
 
  private:
   /// Where a column changes, and to what: weights are the same over whole stretches.
@@ -41,6 +45,7 @@ class TrainedMemory {
 
   std::mutex mutex_;
   std::list<Entry> entries_;
+  std::shared_ptr<ArmMemory> arms_ = std::make_shared<ArmMemory>();
 };
 
 }  // namespace kerf::fitting

@@ -8,8 +8,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include <boost/math/statistics/univariate_statistics.hpp>
-
 #include "training/held_out.h"
 #include "training/trained_memory.h"
 #include "uncertainty/statistics.h"
@@ -17,10 +15,9 @@
 namespace kerf::fitting {
 namespace {
 
-constexpr double robust_width = 1.345;  ///< Huber's, 95 % as good as least squares where the noise is normal
-constexpr double deviation_of_mad = 1.4826;
-constexpr double white_below = 3.0;        ///< samples of correlation time
-constexpr double worth_one_more = 0.95;    ///< share of the held-out error that a larger law has to reach
+constexpr double robust_width = 1.345;   ///< Huber's, 95 % as good as least squares where the noise is normal
+constexpr double white_below = 3.0;      ///< samples of correlation time
+constexpr double worth_one_more = 0.95;  ///< share of the held-out error that a larger law has to reach
 constexpr std::size_t failures_borne = 2;  ///< sizes in a row that do not pay
 
 std::vector<double> of_those(const std::vector<double>& values, const Weights& seen) {
@@ -37,8 +34,7 @@ double loss_scale(const std::vector<double>& residuals, const Weights& weights) 
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     if (weights[i] > 0.0) sizes.push_back(std::sqrt(weights[i]) * std::abs(residuals[i]));
   }
-  const double middle = boost::math::statistics::median(sizes);
-  return std::max(robust_width * deviation_of_mad * middle, std::numeric_limits<double>::min());
+  return std::max(robust_width * robust_deviation(std::move(sizes)), std::numeric_limits<double>::min());
 }
 
 /// Each run weighed by what a first fit leaves in it.
@@ -62,12 +58,14 @@ Weights by_noise(const Samples& samples, const std::vector<double>& residuals, c
 }
 
 /// A law of a given size.
-Trained train_sized(std::string_view model, const FitOptions& options, const Samples& samples,
-                    const Weights& seen, double function_tolerance) {
+Trained train_sized(std::string_view model, const FitOptions& options, const Samples& samples, Weights seen,
+                    double function_tolerance, const TrainedMemory* memory) {
   const Polish polish = function_tolerance < of_a_fold ? Polish::thorough : Polish::brief;
-  Trained law{.problem = make_problem(model, options, samples, seen, polish), .weights = seen};
+  Trained law{.problem = make_problem(model, options, samples, seen, polish), .weights = std::move(seen)};
+  if (memory != nullptr) law.problem.arm_memory = memory->arms();
   const auto p = static_cast<std::size_t>(law.problem.coordinates());
-  const auto count = static_cast<std::size_t>(std::ranges::count_if(seen, [](double w) { return w > 0.0; }));
+  const auto count =
+      static_cast<std::size_t>(std::ranges::count_if(law.weights, [](double w) { return w > 0.0; }));
   if (count <= p) {
     std::ostringstream reason;
     reason << "cannot fit: law '" << model << "' has " << p << " parameters, and there are only " << count
@@ -87,7 +85,7 @@ Trained train_sized(std::string_view model, const FitOptions& options, const Sam
   };
   law.solution = found_by({});
   if (!law.solution.values.empty() && samples.runs.size() > 1 && samples.runs[0].noise_n == 0.0) {
-    law.weights = by_noise(samples, left(), seen);
+    law.weights = by_noise(samples, left(), law.weights);
     search_again();
   }
   if (!law.solution.values.empty() && options.loss != Loss::squares) {
@@ -130,7 +128,7 @@ bool pays(const Size& larger, const Size& smaller) {
 /// A law of a given size, found once: nested folds ask again.
 Trained train_once(std::string_view model, const FitOptions& sized, std::size_t count, const Samples& samples,
                    const Weights& seen, double function_tolerance, TrainedMemory* memory) {
-  const auto train = [&] { return train_sized(model, sized, samples, seen, function_tolerance); };
+  const auto train = [&] { return train_sized(model, sized, samples, seen, function_tolerance, memory); };
   return memory != nullptr ? memory->once(seen, count, function_tolerance, train) : train();
 }
 
@@ -205,12 +203,12 @@ std::vector<double> rendered_residuals(const Problem& problem, const Values& val
   return residuals;
 }
 
-Trained train(std::string_view model, const FitOptions& options, const Samples& samples, const Weights& seen,
+Trained train(std::string_view model, const FitOptions& options, const Samples& samples, Weights seen,
               double function_tolerance, TrainedMemory* memory) {
   const models::SizeFacts& size = models::law_facts(model).size;
   const bool grows = size.grows && !options.law_options.contains(size.option);
   return grows ? train_growing(model, options, samples, seen, function_tolerance, memory)
-               : train_sized(model, options, samples, seen, function_tolerance);
+               : train_sized(model, options, samples, std::move(seen), function_tolerance, memory);
 }
 
 }  // namespace kerf::fitting

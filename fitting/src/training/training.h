@@ -28,7 +28,7 @@ inline constexpr double of_a_fold = 1e-8;
 /// Laws that were trained on the way are kept in `memory`, that of one fit; none: nothing is kept.
 /// @throws std::invalid_argument where there are no more samples than parameters.
 [[nodiscard]] Trained train(std::string_view model, const FitOptions& options, const Samples& samples,
-                            const Weights& seen, double function_tolerance = of_a_law,
+                            Weights seen, double function_tolerance = of_a_law,
                             TrainedMemory* memory = nullptr);
 
 /// What a law leaves of the force of each sample as a loop renders it; nothing where nothing renders it.
