@@ -2,14 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <random>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
+#include <Eigen/QR>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "fitting/strokes.h"
 #include "fitting/uncertainty/coverage.h"
+#include "uncertainty/statistics.h"
 
 namespace kerf::fitting {
 namespace {
@@ -141,6 +146,67 @@ TEST(Bilateral, ElementPullsAndIsFoundAgain) {
   EXPECT_NEAR(result.rmse, 0.02, 1e-3);
   for (std::size_t k = 0; k < 3; ++k)
     EXPECT_TRUE(test::holds(result.parameters[k], tissue.values()[k])) << result.parameters[k].info.name;
+}
+
+/// Force over a path of 600 samples, of lines through given knots, in white noise.
+struct Lines {
+  std::vector<double> time_s, penetration, velocity, force;
+
+  Lines() {
+    std::mt19937_64 random(4);
+    std::normal_distribution<double> normal(0.0, 0.1);
+    for (int i = 0; i < 600; ++i) {
+      const double t = 0.01 * i;
+      time_s.push_back(t);
+      penetration.push_back(0.25 * (1.0 - std::cos(2.0 * t)));
+      velocity.push_back(0.5 * std::sin(2.0 * t));
+      const double x = penetration.back();
+      const double truth = x < 0.1    ? 3.0 * x
+                           : x < 0.25 ? 0.3 + 1.3 / 0.15 * (x - 0.1)
+                                      : 1.6 + 5.3 * (x - 0.25);
+      force.push_back(truth + normal(random));
+    }
+  }
+  /// What lines with these inner knots leave at their best, by a decomposition of their rows.
+  [[nodiscard]] double left_by(double first, double second) const {
+    Eigen::MatrixXd rows(600, 4);
+    for (Eigen::Index i = 0; i < 600; ++i) {
+      const double x = penetration[static_cast<std::size_t>(i)];
+      rows.row(i) << 1.0, x, std::max(0.0, x - first), std::max(0.0, x - second);
+    }
+    const Eigen::Map<const Eigen::VectorXd> measured(force.data(), 600);
+    const Eigen::VectorXd best = rows.colPivHouseholderQr().solve(measured);
+    return (rows * best - measured).squaredNorm();
+  }
+  /// The same of the first knot, wherever the second leaves least.
+  [[nodiscard]] double left_by(double first) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (double second = 0.2; second < 0.3; second += 1e-4) least = std::min(least, left_by(first, second));
+    return least;
+  }
+};
+
+TEST(Limits, OfAKnotAmongFewSamplesAreWhereTheSumOfSquaresHasRisen) {
+  const Lines lines;
+  const Series series{.time_s = lines.time_s,
+                      .penetration = lines.penetration,
+                      .velocity = lines.velocity,
+                      .force = lines.force,
+                      .cycle = {}};
+  const FitResult fit = fitting::fit("piecewise", series, {.law_options = {{"segments", 3.0}}, .folds = 0});
+  const Estimate& knot = estimate_of(fit, "knot[1]");
+  EXPECT_EQ(knot.by, IntervalBy::profile);
+  const double least = lines.left_by(knot.value);
+  const double unit = fit.correlation_time * least / 594.0;
+  const auto deviation = [&](double at) { return std::sqrt((lines.left_by(at) - least) / unit); };
+  const double quantile = student_t(0.95, 594.0);
+  EXPECT_NEAR(deviation(knot.lower) / quantile, 1.0, 0.05);
+  EXPECT_NEAR(deviation(knot.upper) / quantile, 1.0, 0.05);
+  const double half = quantile * knot.std_error;
+  EXPECT_GT(std::max(std::abs(deviation(knot.value - half) / quantile - 1.0),
+                     std::abs(deviation(knot.value + half) / quantile - 1.0)),
+            0.1)
+      << "Wald's is another";
 }
 
 }  // namespace

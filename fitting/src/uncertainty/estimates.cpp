@@ -38,8 +38,6 @@ Estimate estimate_of(const models::ParameterInfo& info, double value, const Know
           .p_zero = known.limits.p_zero};
 }
 
-constexpr double no_misfit_below = 3.0;  ///< samples of correlation time: nothing is left of a misfit
-
 bool at_bound(const models::ParameterInfo& info, double value) {
   const double margin = info.scale == models::Scale::logarithmic ? 1.001 : 1.0;
   return value <= info.lower * (info.lower > 0.0 ? margin : 1.0) ||
@@ -161,26 +159,25 @@ class Estimation {
     const Eigen::VectorXd at = coordinates_of(inner, solution_.values);
     Uncertainty uncertainty;
     std::vector<Limits> limits;
-    bool none = false;
     if (options_.intervals == Intervals::white) {
       uncertainty = as_of_white_noise(objective, at, solution_, weights_, options_.confidence);
       limits = wald_limits_of(inner, at, uncertainty);
       result_.covariance_by = CovarianceBy::white;
     } else {
       const Linearisation linear = linearise(objective, inner, solution_, samples_, weights_, loss_);
+      if (inner.facts().search == models::Search::threshold && !is_least(linear)) {
+        return take_none(
+            inner, "the memberships were trained on means, and are not those of least squares: no intervals");
+      }
       uncertainty = uncertainty_of(linear, options_.confidence);
       limits = limits_within(inner, objective, at, linear, uncertainty);
       result_.covariance_by = uncertainty.by_cycles ? CovarianceBy::cycles : CovarianceBy::residuals;
-      none = inner.facts().search == models::Search::threshold && !is_least(linear, uncertainty);
       if (inner.facts().search == models::Search::fracture && inner.coordinates() == problem_.coordinates())
         events_ = limits_by_events(inner, samples_, weights_, solution_, loss_, linear, uncertainty,
                                    options_.confidence);
       if (!events_.warning.empty()) result_.warnings.push_back(events_.warning);
     }
     result_.correlation_time = std::min(uncertainty.correlation_time, static_cast<double>(samples_.size()));
-    if (none)
-      return take_none(
-          inner, "the memberships were trained on means, and are not those of least squares: no intervals");
     take(inner, uncertainty, limits);
     if (options_.profile) {
       result_.profiles =
@@ -265,12 +262,15 @@ class Estimation {
     warn_of_zeros(inner);
   }
 
-  /// Whether the solution is where the sum of squares is least, to a small share of a standard error.
-  [[nodiscard]] static bool is_least(const Linearisation& linear, const Uncertainty& uncertainty) {
+  /// Whether the solution is where the sum of squares is least, to a small share of a standard error. Notes
+  /// how long the residuals remember.
+  [[nodiscard]] bool is_least(const Linearisation& linear) {
     constexpr double negligible = 0.02;  // of the rise in one standard error
+    result_.correlation_time = correlation_time({linear.residuals.begin(), linear.residuals.end()});
     const Eigen::VectorXd score = linear.jacobian.transpose() * linear.residuals;
     const double promise = score.dot(solve_normal(gram(linear.jacobian), score));
-    const double unit = linear.residuals.squaredNorm() / std::max(1.0, uncertainty.effective_samples);
+    const double unit = linear.residuals.squaredNorm() * result_.correlation_time /
+                        static_cast<double>(linear.residuals.size());
     return promise <= negligible * unit;
   }
 

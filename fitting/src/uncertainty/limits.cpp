@@ -20,7 +20,11 @@ using Eigen::Index;
 constexpr double short_half = 0.1;  ///< of an interval that is taken as it is
 constexpr double like_a_parabola = 0.1;
 constexpr double near_enough = 0.005;  ///< of a deviation, to the limit that it should reach
-constexpr double zero_beside = 1e-6;   ///< of the upper bound: a lower one this small stands for none
+/// Samples that a knot goes past leave one line for another: where few lie within its interval, the sum of
+/// squares bends by turns more and less than J'J says, and so it does for the forces beside. What J'J lacks
+/// is, in itself, a share that falls with the fourth root of the number of samples.
+constexpr double enough_for_knots = 3000.0;
+constexpr double zero_beside = 1e-6;  ///< of the upper bound: a lower one this small stands for none
 
 /// A column of the inverse of second derivatives whose scales may be far apart.
 Eigen::VectorXd inverse_column(const Eigen::MatrixXd& hessian, Index k) {
@@ -263,16 +267,30 @@ std::vector<Limits> limits_of(const Problem& problem, const LawObjective& object
   const auto coordinates = problem.all();
   const Bounds ends = ends_of(problem);
   const bool smooth = problem.facts().search == models::Search::descent;
+  std::vector<Question> questions;
+  for (std::size_t place = 0; place < coordinates.size(); ++place) {
+    const auto k = static_cast<Index>(place);
+    questions.push_back(question_of(problem.parameters[coordinates[place].parameter], at, k, uncertainty));
+    questions.back().scale = scale[place];
+    questions.back().unit = unit_of_rise(uncertainty, hessian, sums, k);
+  }
+  const auto bends_evenly = [&](const Question& asked) {
+    return uncertainty.determined[static_cast<std::size_t>(asked.k)] &&
+           is_like_a_parabola(objective, at, sums, hessian, bounds, asked);
+  };
+  const bool uneven = problem.facts().search == models::Search::segments &&
+                      uncertainty.correlation_time < no_misfit_below &&
+                      uncertainty.effective_samples < enough_for_knots &&
+                      std::ranges::any_of(questions, [&](const Question& asked) {
+                        return asked.info.quantity == models::Quantity::position && !bends_evenly(asked);
+                      });
   std::vector<Limits> all(coordinates.size());
   share_out(all.size(), threads, [&](std::size_t place) {
-    const auto k = static_cast<Index>(place);
-    const bool determined = uncertainty.determined[place];
-    Question asked = question_of(problem.parameters[coordinates[place].parameter], at, k, uncertainty);
-    asked.scale = scale[place];
-    asked.unit = unit_of_rise(uncertainty, hessian, sums, k);
-    if (!smooth && !determined) return;
-    if (!smooth || asked.half <= short_half * asked.scale ||
-        (determined && is_like_a_parabola(objective, at, sums, hessian, bounds, asked))) {
+    const Question& asked = questions[place];
+    const Index k = asked.k;
+    if (!smooth && !uncertainty.determined[place]) return;
+    const bool like_wald = smooth ? asked.half <= short_half * asked.scale || bends_evenly(asked) : !uneven;
+    if (like_wald) {
       all[place] = by_wald(asked);
     } else {
       all[place] =

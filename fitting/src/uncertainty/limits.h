@@ -19,6 +19,8 @@ struct Limits {
 /// Whether the smallest value that a law accepts stands for none: a spring of 1e-9 N/m is no spring.
 [[nodiscard]] bool may_be_zero(const models::ParameterInfo& info);
 
+inline constexpr double no_misfit_below = 3.0;  ///< samples of correlation time: nothing is left of a misfit
+
 /// The second derivatives of half the sum of squares at its minimum, J^T J and what the residuals add to it
 /// where the law misfits, by differences of the score; J^T J itself where they are not to be had, or are not
 /// those of a minimum.
@@ -43,6 +45,9 @@ void take_curvature(Uncertainty& uncertainty, const Sums& sums, const Eigen::Mat
 ///    quantile; no limit on a side where it does not before the bound of the parameter, or only because
 ///    another one came to the end of its range. A lower bound that stands for none (may_be_zero()) is then
 ///    the limit, zero.
+///
+/// A curve of segments has Wald's at any width; the profile for all its parameters where a knot fails the
+/// second rule, few samples being independent and nothing being left of a misfit.
 ///
 /// With each, where the parameter may be zero, how likely estimates as far from it are if it is: by the
 /// deviation of the best fit without it, one-sided where it cannot be negative [SelfLiang1987].
