@@ -71,7 +71,7 @@ RenderedSeries::RenderedSeries(const AxisSeries& series, double loop_rate_hz) {
 std::vector<double> RenderedSeries::force(const models::Law& law) const {
   std::vector<double> of_rows;
   of_rows.reserve(tick_.size());
-  std::array<double, 4096> of_ticks;  // at once: all would be one column more
+  std::array<double, 4096> of_ticks{};  // at once: all would be one column more
   models::Law::State state = law.initial_state();
   for (std::size_t begin = 0; begin < motion_.size(); begin += of_ticks.size()) {
     const std::size_t count = std::min(of_ticks.size(), motion_.size() - begin);

@@ -61,7 +61,8 @@ Weights by_noise(const Samples& samples, const std::vector<double>& residuals, c
 Trained train_sized(std::string_view model, const FitOptions& options, const Samples& samples, Weights seen,
                     double function_tolerance, const TrainedMemory* memory) {
   const Polish polish = function_tolerance < of_a_fold ? Polish::thorough : Polish::brief;
-  Trained law{.problem = make_problem(model, options, samples, seen, polish), .weights = std::move(seen)};
+  Trained law{.problem = make_problem(model, options, samples, seen, polish)};
+  law.weights = std::move(seen);
   if (memory != nullptr) law.problem.arm_memory = memory->arms();
   const auto p = static_cast<std::size_t>(law.problem.coordinates());
   const auto count =
