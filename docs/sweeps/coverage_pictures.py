@@ -18,8 +18,8 @@ CONDITIONS = [
     ("noise 0.02 N", lambda law, name, noise: name == law and noise == 0.02),
     ("noise 0.1 N", lambda law, name, noise: name == law and noise == 0.1),
     ("20 Hz", lambda law, name, noise: name == f"{law}-coarse"),
-    ("encoder of 5 mrad", lambda law, name, noise: name == f"{law}-encoder"),
-    ("another law's data", lambda law, name, noise: not name.startswith(law)),
+    ("encoder 5 mrad", lambda law, name, noise: name == f"{law}-encoder"),
+    ("another law", lambda law, name, noise: not name.startswith(law)),
 ]
 
 
@@ -79,6 +79,8 @@ def main(folder):
             at = [known[code] == recording for code in target["recording"][:]].index(True)
             shares = []
             for name in names:
+                if not (table[name + "_std_error"][:][is_it] > 0).any():
+                    continue  # held, not searched
                 value = float(target[name][at])
                 lower, upper = table[name + "_lower"][:][is_it], table[name + "_upper"][:][is_it]
                 there = numpy.isfinite(lower) | numpy.isfinite(upper)
