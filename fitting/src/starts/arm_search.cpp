@@ -104,21 +104,17 @@ void descend_by_sums(const Problem& problem, const ArmProducts& products, const 
   solution.iterations += minimum.iterations;
 }
 
-/// Where the law itself lets go, and what it leaves.
-struct AsRun {
+std::vector<double> force_of(const Problem& problem, const Samples& samples,
+                             const std::vector<double>& values) {
+  return rendered(problem, Values(problem.runs, values), samples);
+}
+
+/// Where there is no force.
+LetGo none_in(const std::vector<double>& force) {
   LetGo let_go;
-  double squares = 0.0;
-};
-AsRun run(const Problem& problem, const Samples& samples, const Weights& weights,
-          const std::vector<double>& values) {
-  const std::vector<double> force = rendered(problem, Values(problem.runs, values), samples);
-  AsRun law;
-  law.let_go.reserve(force.size());
-  for (std::size_t i = 0; i < force.size(); ++i) {
-    law.let_go.push_back(force[i] == 0.0 ? 1 : 0);
-    law.squares += weights[i] * (force[i] - samples.force[i]) * (force[i] - samples.force[i]);
-  }
-  return law;
+  let_go.reserve(force.size());
+  for (const double one : force) let_go.push_back(one == 0.0 ? 1 : 0);
+  return let_go;
 }
 
 /// By sums the least is sought for the samples at which the law would push; it is run to see at which it
@@ -129,17 +125,19 @@ bool follow_the_law(const Problem& problem, const Samples& samples, const Weight
   double before = 0.0;
   bool sure = true;
   for (int round = 0;; ++round) {
-    AsRun law = run(problem, samples, weights, solution.values[0]);
-    const double off = std::abs(law.squares - solution.squares);
+    const std::vector<double> force = force_of(problem, samples, solution.values[0]);
+    const double squares = squares_left(force, samples, weights);
+    const double off = std::abs(squares - solution.squares);
     const auto within = [&](double share) {
       return off <= share * solution.squares + rounded * products.squares;
     };
     sure = sure && within(nearly);
-    solution.squares = law.squares;
+    solution.squares = squares;
     if (within(agreed)) return sure;
-    if (law.let_go == let_go || (round >= 2 && !(off < 0.5 * before))) return false;
+    LetGo of_law = none_in(force);
+    if (of_law == let_go || (round >= 2 && !(off < 0.5 * before))) return false;
     before = off;
-    let_go = std::move(law.let_go);
+    let_go = std::move(of_law);
     products = sums.of(folds, let_go);
     descend_by_sums(problem, products, options, solution);
   }
@@ -186,7 +184,7 @@ LetGo slack(const Problem& problem, const Samples& samples) {
 }
 
 LetGo let_go_of(const Problem& problem, const Samples& samples, const std::vector<double>& values) {
-  return run(problem, samples, Weights(samples.size(), 0.0), values).let_go;
+  return none_in(force_of(problem, samples, values));
 }
 
 }  // namespace kerf::fitting

@@ -3,11 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
+
+#include <boost/math/special_functions/chebyshev.hpp>
 
 namespace kerf::fitting {
 namespace {
 
-constexpr double beyond = 4.0;         ///< how far past the decades of the data the series holds
+// How far past the decades of the data the series holds: to an arm that is no more than a dashpot, and to one
+// that hardly yields.
+constexpr double shorter = 40.0;
+constexpr double longer = 4.0;
 constexpr double series_error = 1e-7;  ///< of an answer
 
 /// How long the motion takes for its range, on average.
@@ -24,9 +30,8 @@ double time_of_motion(const Samples& samples) {
 }
 
 ArmSeries series_of(const Samples& samples) {
-  // Beyond the decades of the data: to an arm that is no more than a dashpot, and to one that hardly yields.
   const auto [shortest_s, longest_s] = decades_of(samples);
-  return {shortest_s / 40.0, 4.0 * longest_s, time_of_motion(samples)};
+  return {shortest_s / shorter, longest_s * longer, time_of_motion(samples)};
 }
 
 /// Spring, arms at the nodes, and force, each times the root of the weight.
@@ -121,19 +126,13 @@ ArmSeries::At ArmSeries::at(double log_time) const {
   const double u = (log_time - middle_) / half_;
   const double share = 1.0 / (1.0 + motion_s_ * std::exp(-log_time));
   At at{.value = Eigen::VectorXd(terms_), .slope = Eigen::VectorXd(terms_)};
-  double first = 0.0;   // U_{k-1}, of which T_k' = k U_{k-1}
-  double before = 0.0;  // U_{k-2}
-  double t = 1.0;
-  double t_before = u;  // T_{-1} = T_1
+  double t = 1.0, t_before = u;               // T_0, T_-1
+  double second = 0.0, second_before = -1.0;  // U_-1, U_-2 of the second kind: dT_k / du = k U_k-1
   for (Eigen::Index k = 0; k < terms_; ++k) {
     at.value[k] = share * t;
-    at.slope[k] = share * (static_cast<double>(k) * first / half_ + (1.0 - share) * t);
-    const double t_next = 2.0 * u * t - t_before;
-    t_before = t;
-    t = t_next;
-    const double next = k == 0 ? 1.0 : 2.0 * u * first - before;
-    before = first;
-    first = next;
+    at.slope[k] = share * (static_cast<double>(k) * second / half_ + (1.0 - share) * t);
+    t_before = std::exchange(t, boost::math::chebyshev_next(u, t, t_before));
+    second_before = std::exchange(second, boost::math::chebyshev_next(u, second, second_before));
   }
   return at;
 }

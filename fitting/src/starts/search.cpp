@@ -159,14 +159,16 @@ void hold(Problem& problem, std::string_view name) {
 
 }  // namespace
 
+double squares_left(const std::vector<double>& force, const Samples& samples, const Weights& weights) {
+  double squares = 0.0;
+  for (std::size_t i = 0; i < force.size(); ++i)
+    squares += weights[i] * (force[i] - samples.force[i]) * (force[i] - samples.force[i]);
+  return squares;
+}
+
 double squares_of(const Problem& problem, const Samples& samples, const Weights& weights,
                   const Values& values) {
-  const auto force = rendered(problem, values, samples);
-  double squares = 0.0;
-  for (std::size_t i = 0; i < force.size(); ++i) {
-    squares += weights[i] * (force[i] - samples.force[i]) * (force[i] - samples.force[i]);
-  }
-  return squares;
+  return squares_left(rendered(problem, values, samples), samples, weights);
 }
 
 Problem make_problem(std::string_view model, const FitOptions& given, const Samples& samples,

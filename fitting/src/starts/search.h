@@ -30,7 +30,9 @@ struct SearchOptions {
   double function_tolerance = 1e-12;
 };
 
-/// What a law of these values leaves of weighed samples [N2].
+/// What a force leaves of weighed samples [N2], and what that of a law of these values does.
+[[nodiscard]] double squares_left(const std::vector<double>& force, const Samples& samples,
+                                  const Weights& weights);
 [[nodiscard]] double squares_of(const Problem& problem, const Samples& samples, const Weights& weights,
                                 const Values& values);
 
