@@ -19,6 +19,8 @@ namespace {
 constexpr std::array colours{"#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7",
                              "#E69F00", "#56B4E9", "#F0E442", "#8A8A8A"};
 
+constexpr double letter_px = 7.5;  ///< of the font below, on average
+
 std::string style_of(const Curve& curve) {
   switch (curve.mark) {
     case Mark::line:
@@ -110,12 +112,13 @@ std::vector<NamedTick> ticks_of_few_decades(const Range& range) {
   return ticks.size() < 3 ? ticks_at({1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0}) : ticks;
 }
 
-/// Of the numbers above zero that a logarithmic axis without a range has to hold.
-Range needed_range(const std::vector<Curve>& curves, std::vector<double> Curve::*numbers) {
-  Range range{.begin = std::numeric_limits<double>::infinity(), .end = 0.0};
+/// Of the numbers that an axis without a range has to hold; of those above zero if it is logarithmic.
+Range needed_range(const std::vector<Curve>& curves, std::vector<double> Curve::*numbers, bool logarithmic) {
+  constexpr double none = std::numeric_limits<double>::infinity();
+  Range range{.begin = none, .end = logarithmic ? 0.0 : -none};
   for (const Curve& curve : curves) {
     for (const double value : curve.*numbers) {
-      if (!std::isfinite(value) || value <= 0.0) continue;
+      if (!std::isfinite(value) || (logarithmic && value <= 0.0)) continue;
       range.begin = std::min(range.begin, value);
       range.end = std::max(range.end, value);
     }
@@ -130,9 +133,30 @@ std::string without_formats(const std::string& name) {
   return plain;
 }
 
-std::string ticks_of(char axis, const std::vector<NamedTick>& ticks) {
+/// How long the axis below a chart is: what the numbers and the legend beside it leave.
+double x_axis_px(const Chart& chart, const std::vector<Curve>& curves) {
+  constexpr double numbers_px = 90.0;
+  constexpr double sample_px = 50.0;
+  std::size_t longest = 0;
+  for (const Curve& curve : curves) longest = std::max(longest, curve.label.size());
+  const bool beside = longest > 0 && !chart.legend_below;
+  return chart.width_px - numbers_px - (beside ? sample_px + letter_px * static_cast<double>(longest) : 0.0);
+}
+
+/// Whether names along a linear axis would run into each other.
+bool names_touch(const std::vector<NamedTick>& ticks, const Range& range, double axis_px) {
+  constexpr double apart_px = 8.0;
+  for (std::size_t i = 1; i < ticks.size(); ++i) {
+    const double way_px = axis_px * std::abs(ticks[i].at - ticks[i - 1].at) / (range.end - range.begin);
+    const std::size_t letters = ticks[i].name.size() + ticks[i - 1].name.size();
+    if (way_px < 0.5 * letter_px * static_cast<double>(letters) + apart_px) return true;
+  }
+  return false;
+}
+
+std::string ticks_of(char axis, const std::vector<NamedTick>& ticks, bool slanted = false) {
   if (ticks.empty()) return {};
-  std::string script = fmt::format("set {}tics (", axis);
+  std::string script = fmt::format("set {}tics {}(", axis, slanted ? "rotate by 30 right " : "");
   for (const NamedTick& tick : ticks) {
     script += fmt::format("{}{} {}", &tick == &ticks.front() ? "" : ", ",
                           gnuplot_text(without_formats(tick.name)), tick.at);
@@ -170,13 +194,17 @@ std::string script_of(const Chart& chart, const std::string& output) {
     script += "unset key\nset rmargin 3\n";
   if (chart.left_margin > 0) fmt::format_to(out, "set lmargin {}\n", chart.left_margin);
   if (chart.right_margin > 0) fmt::format_to(out, "set rmargin {}\n", chart.right_margin);
-  const auto ticks = [&](const std::vector<NamedTick>& given, bool logarithmic, const Range& range,
-                         std::vector<double> Curve::*numbers) {
-    if (!given.empty() || !logarithmic) return given;
-    return ticks_of_few_decades(range.begin < range.end ? range : needed_range(chart.curves, numbers));
+  const auto held = [&](const Range& given, bool logarithmic, std::vector<double> Curve::*numbers) {
+    return given.begin < given.end ? given : needed_range(chart.curves, numbers, logarithmic);
   };
-  script += ticks_of('x', ticks(chart.x_ticks, chart.log_x, chart.x_range, &Curve::x)) +
-            ticks_of('y', ticks(chart.y_ticks, chart.log_y, chart.y_range, &Curve::y));
+  const Range x_range = held(chart.x_range, chart.log_x, &Curve::x);
+  const Range y_range = held(chart.y_range, chart.log_y, &Curve::y);
+  const auto ticks = [&](const std::vector<NamedTick>& given, bool logarithmic, const Range& range) {
+    return given.empty() && logarithmic ? ticks_of_few_decades(range) : given;
+  };
+  const bool slanted = !chart.log_x && names_touch(chart.x_ticks, x_range, x_axis_px(chart, curves));
+  script += ticks_of('x', ticks(chart.x_ticks, chart.log_x, x_range), slanted) +
+            ticks_of('y', ticks(chart.y_ticks, chart.log_y, y_range));
   for (const Band& band : chart.bands) {
     fmt::format_to(
         out,

@@ -42,6 +42,17 @@ TEST(Plot, NamesTicksOnBothAxes) {
   EXPECT_THAT(svg, HasSubstr("50 % off"));
 }
 
+TEST(Plot, SlantsNamesThatWouldRunIntoEachOther) {
+  Chart chart{.curves = {{.x = {0, 1, 2, 3}, .y = {0, 3, 1, 2}}},
+              .x_ticks = {{0.0, "one"}, {1.0, "two"}, {2.0, "three"}, {3.0, "four"}}};
+  EXPECT_THAT(draw(chart), Not(HasSubstr("rotate(-30")));
+  for (NamedTick& tick : chart.x_ticks) tick.name += ", of a law with a very long name";
+  EXPECT_THAT(draw(chart),
+              AllOf(HasSubstr("rotate(-30"), HasSubstr("three, of a law with a very long name")));
+  chart.width_px = 1800;
+  EXPECT_THAT(draw(chart), Not(HasSubstr("rotate(-30"))) << "there is room for them";
+}
+
 TEST(Plot, NumbersALogarithmicAxisOfOneDecadeByMoreThanItsEnds) {
   const Chart narrow{.curves = {{.x = {1.3, 1.4}, .y = {1, 2}}}, .x_range = {0.15, 2.4}, .log_x = true};
   const std::string svg = draw(narrow);
