@@ -5,27 +5,21 @@
 namespace kerf::fitting::wide {
 namespace {
 
-struct Columns {
-  const double* depth;
-  const double* moves;
-  const double* force;
-  const double* weight;
-  std::size_t padded;
-};
+static_assert(DeformedRows::in_a_packet == lanes);
 
-KERF_WIDE_PACKETS void run(const Columns& rows, double amplitude, double rate, double shift,
-                           DeformedRows::Sums& into) {
+KERF_WIDE_PACKETS void run(const std::vector<DeformedRows::Packet>& rows, double amplitude, double rate,
+                           double shift, DeformedRows::Sums& into) {
   Pack squares = all(0.0);
   Pack s0 = all(0.0), s1 = all(0.0), s2 = all(0.0);
   Pack n00 = all(0.0), n01 = all(0.0), n02 = all(0.0), n11 = all(0.0), n12 = all(0.0), n22 = all(0.0);
-  for (std::size_t i = 0; i < rows.padded; i += lanes) {
-    const Pack moves = load(&rows.moves[i]);
-    const Pack growth = rate * (load(&rows.depth[i]) - moves * shift);
+  for (const DeformedRows::Packet& row : rows) {
+    const Pack moves = load(row.moves.data());
+    const Pack growth = rate * (load(row.depth.data()) - moves * shift);
     const Pack force = amplitude * exp(growth);
-    const Pack residual = force - load(&rows.force[i]);
+    const Pack residual = force - load(row.force.data());
     const Pack by_rate = force * growth;
     const Pack by_shift = -rate * (force * moves);
-    const Pack weight = load(&rows.weight[i]);
+    const Pack weight = load(row.weight.data());
     const Pack weighed = weight * force;
     const Pack weighed_rate = weight * by_rate;
     const Pack weighed_shift = weight * by_shift;
@@ -47,27 +41,9 @@ KERF_WIDE_PACKETS void run(const Columns& rows, double amplitude, double rate, d
 
 }  // namespace
 
-void DeformedRows::reserve(std::size_t rows) {
-  for (auto* const column : {&depth_, &moves_, &force_, &weight_}) column->reserve(rows + lanes);
-}
-
-void DeformedRows::add(double depth_m, double moves, double force_n, double weight) {
-  depth_.push_back(depth_m);
-  moves_.push_back(moves);
-  force_.push_back(force_n);
-  weight_.push_back(weight);
-}
-
-void DeformedRows::end() {
-  count_ = depth_.size();
-  const std::size_t padded = (count_ + lanes - 1) / lanes * lanes;
-  for (auto* const column : {&depth_, &moves_, &force_, &weight_}) column->resize(padded, 0.0);
-}
-
 DeformedRows::Sums DeformedRows::sums(double amplitude_n, double rate_per_m, double shift_m) const noexcept {
   Sums sums;
-  run({depth_.data(), moves_.data(), force_.data(), weight_.data(), depth_.size()}, amplitude_n, rate_per_m,
-      shift_m, sums);
+  run(packets_, amplitude_n, rate_per_m, shift_m, sums);
   return sums;
 }
 

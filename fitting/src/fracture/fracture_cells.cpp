@@ -39,15 +39,14 @@ class CellOfRows {
   }
   [[nodiscard]] FractureCell cell(FractureRows rows) && {
     leave_a_depth();
-    FractureCell cell{.depth_to = infinite,
-                      .crack_from = crack_from_,
-                      .crack_to = crack_to_,
-                      .crack = crack_,
-                      .deepest_whole = std::move(deepest_whole_),
-                      .first_that_breaks = std::move(first_that_breaks_),
-                      .rows = std::move(rows)};
-    std::tie(cell.depth_from, cell.depth_to) = cell.depths_at(crack_);
-    return cell;
+    FractureSides sides{.depth_to = infinite,
+                        .crack_from = crack_from_,
+                        .crack_to = crack_to_,
+                        .crack = crack_,
+                        .deepest_whole = std::move(deepest_whole_),
+                        .first_that_breaks = std::move(first_that_breaks_)};
+    std::tie(sides.depth_from, sides.depth_to) = sides.depths_at(crack_);
+    return {std::move(sides), std::move(rows)};
   }
 
  private:
@@ -179,7 +178,7 @@ Minimum descend_by_steps(const Objective& objective, const Eigen::VectorXd& star
   return minimum;
 }
 
-std::pair<double, double> FractureCell::depths_at(double length) const {
+std::pair<double, double> FractureSides::depths_at(double length) const {
   const double longer = length - crack;
   double from = 0.0;
   double to = infinite;
@@ -191,7 +190,7 @@ std::pair<double, double> FractureCell::depths_at(double length) const {
   return {from, to};
 }
 
-Eigen::VectorXd FractureCell::moved_to(Eigen::VectorXd at, double length) const {
+Eigen::VectorXd FractureSides::moved_to(Eigen::VectorXd at, double length) const {
   at[FractureCoordinates::crack] = std::log(length);
   const auto [from, to] = depths_at(length);
   const double depth = std::exp(at[FractureCoordinates::depth]);
@@ -203,8 +202,8 @@ Eigen::VectorXd FractureCell::moved_to(Eigen::VectorXd at, double length) const 
 namespace {
 
 /// The depths of a cell that ends somewhere.
-std::pair<double, double> ends_at(const FractureCell& cell, double length) {
-  const auto [from, to] = cell.depths_at(length);
+std::pair<double, double> ends_at(const FractureSides& sides, double length) {
+  const auto [from, to] = sides.depths_at(length);
   if (std::isinf(to)) return {from, 2.0 * from};
   return {from > 0.0 ? from : 0.5 * to, to};
 }
@@ -214,8 +213,8 @@ std::pair<double, double> ends_at(const FractureCell& cell, double length) {
 bool CellObjective::evaluate(const Eigen::VectorXd& at, Sums& sums) const {
   constexpr double small = 1e-6;  // of the crack: ends move along straight lines
   const double crack = std::exp(at[FractureCoordinates::crack]);
-  const auto [from, to] = ends_at(cell_, crack);
-  const auto [from_beyond, to_beyond] = ends_at(cell_, (1.0 + small) * crack);
+  const auto [from, to] = ends_at(cell_.sides, crack);
+  const auto [from_beyond, to_beyond] = ends_at(cell_.sides, (1.0 + small) * crack);
   if (!(from < to)) return false;
   const Eigen::VectorXd whole = outside(at);
   if (!coordinates_.admit(whole)) return false;
@@ -232,13 +231,13 @@ bool CellObjective::evaluate(const Eigen::VectorXd& at, Sums& sums) const {
 }
 
 Eigen::VectorXd CellObjective::inside(Eigen::VectorXd at) const {
-  const auto [from, to] = ends_at(cell_, std::exp(at[FractureCoordinates::crack]));
+  const auto [from, to] = ends_at(cell_.sides, std::exp(at[FractureCoordinates::crack]));
   double& depth = at[FractureCoordinates::depth];
   depth = (std::exp(depth) - from) / (to - from);
   return at;
 }
 Eigen::VectorXd CellObjective::outside(Eigen::VectorXd at) const {
-  const auto [from, to] = ends_at(cell_, std::exp(at[FractureCoordinates::crack]));
+  const auto [from, to] = ends_at(cell_.sides, std::exp(at[FractureCoordinates::crack]));
   double& depth = at[FractureCoordinates::depth];
   depth = std::log(from + depth * (to - from));
   return at;
@@ -249,13 +248,14 @@ Bounds CellObjective::bounds() const {
   constexpr double off = 1e-6;  // of a cell: at its ends rows break that did not
   constexpr Eigen::Index depth = FractureCoordinates::depth;
   constexpr Eigen::Index crack = FractureCoordinates::crack;
-  const double share = std::isfinite(cell_.crack_to) ? off * (cell_.crack_to - cell_.crack_from) : 0.0;
+  const double share =
+      std::isfinite(cell_.sides.crack_to) ? off * (cell_.sides.crack_to - cell_.sides.crack_from) : 0.0;
   bounds.lower[depth] = off;
   bounds.upper[depth] = 1.0 - off;
-  if (cell_.crack_from > 0.0)
-    bounds.lower[crack] = std::max(bounds.lower[crack], std::log(cell_.crack_from + share));
-  if (std::isfinite(cell_.crack_to))
-    bounds.upper[crack] = std::min(bounds.upper[crack], std::log(cell_.crack_to - share));
+  if (cell_.sides.crack_from > 0.0)
+    bounds.lower[crack] = std::max(bounds.lower[crack], std::log(cell_.sides.crack_from + share));
+  if (std::isfinite(cell_.sides.crack_to))
+    bounds.upper[crack] = std::min(bounds.upper[crack], std::log(cell_.sides.crack_to - share));
   return bounds;
 }
 

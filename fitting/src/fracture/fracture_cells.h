@@ -10,7 +10,7 @@ namespace kerf::fitting {
 /// Depths of yielding, and lengths of the crack, by which the same rows break and lie before the tip. A row
 /// before which so many cracks lie that ran ahead of the tool is less deep by as many times what they are
 /// longer.
-struct FractureCell {
+struct FractureSides {
   double depth_from = 0.0;  ///< deepest whole row [m]; 0: none
   double depth_to;          ///< shallowest that breaks; infinite: none does
   double crack_from = 0.0;  ///< where depths of yielding are left between the two
@@ -18,13 +18,18 @@ struct FractureCell {
   double crack = 0.0;                 ///< at which the depths are those of here
   std::vector<double> deepest_whole;  ///< by the number of cracks before
   std::vector<double> first_that_breaks;
-  FractureRows rows;
 
   /// The depths of yielding at another length of the crack.
   [[nodiscard]] std::pair<double, double> depths_at(double length) const;
   /// The coordinates at another length of the crack, with a depth by which no row breaks that did not, if
   /// there is one.
   [[nodiscard]] Eigen::VectorXd moved_to(Eigen::VectorXd at, double length) const;
+};
+
+/// The same, and the rows on their sides.
+struct FractureCell {
+  FractureSides sides;
+  FractureRows rows;
 };
 
 /// Sum of squares of a Fracture by its coordinates.

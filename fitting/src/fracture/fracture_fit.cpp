@@ -51,10 +51,11 @@ class FractureDescent {
     constexpr double beyond = 1e-9;
     for (int i = 0; i < most_cells; ++i) {
       const FractureCell cell = objective_.cell(place.at);
+      const FractureSides& sides = cell.sides;
       take(place, least_in_cell(coordinates_, cell, place.at, most_steps, to_the_end));
       const double within = place.squares;
-      for (const double crack : {cell.crack_from * (1.0 - beyond), cell.crack_to * (1.0 + beyond)}) {
-        if (crack > 0.0 && std::isfinite(crack)) look_at(place, cell.moved_to(place.at, crack));
+      for (const double crack : {sides.crack_from * (1.0 - beyond), sides.crack_to * (1.0 + beyond)}) {
+        if (crack > 0.0 && std::isfinite(crack)) look_at(place, sides.moved_to(place.at, crack));
       }
       if (!(place.squares < (1.0 - worth_a_cell) * within)) break;
     }
@@ -90,9 +91,9 @@ class FractureDescent {
   /// leave.
   void centre(FracturePlace& place) const {
     constexpr double as_good = 1e-12;
-    const FractureCell cell = objective_.cell(place.at);
-    if (!(cell.depth_from > 0.0) || std::isinf(cell.depth_to)) return;
-    const double way = std::log(0.5 * (cell.depth_from + cell.depth_to)) - place.at[Coordinates::depth];
+    const FractureSides sides = objective_.cell(place.at).sides;
+    if (!(sides.depth_from > 0.0) || std::isinf(sides.depth_to)) return;
+    const double way = std::log(0.5 * (sides.depth_from + sides.depth_to)) - place.at[Coordinates::depth];
     Eigen::VectorXd at_one_crack = place.at;
     at_one_crack[Coordinates::depth] += way;
     Eigen::VectorXd at_one_force = place.at;

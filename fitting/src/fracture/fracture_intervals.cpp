@@ -21,8 +21,8 @@ constexpr double no_error = std::numeric_limits<double>::quiet_NaN();
 /// One choice of the rows that break, the rest at its best.
 struct RowChoice {
   Eigen::VectorXd at;
-  FractureCell cell;
-  double left = 0.0;  ///< deviation that is left of the quantile
+  FractureSides sides;  // of very many choices, each with its rows, memory would tell
+  double left = 0.0;    ///< deviation that is left of the quantile
 };
 
 /// Those that are not out of the question, and whether there is one that is at either end.
@@ -50,7 +50,7 @@ class ChoiceSearch {
         quantile_(quantile) {}
 
   [[nodiscard]] RowChoices around(const Eigen::VectorXd& best, bool crack_is_seen) const {
-    RowChoices choices{.all = {{best, objective_.cell(best), quantile_}}};
+    RowChoices choices{.all = {{best, objective_.cell(best).sides, quantile_}}};
     choices.depth_ends_below = go_out(choices.all, Coordinates::depth, -1.0);
     choices.depth_ends_above = go_out(choices.all, Coordinates::depth, 1.0);
     if (!crack_is_seen) return choices;
@@ -64,8 +64,8 @@ class ChoiceSearch {
   static constexpr double beyond = 1e-9;  ///< an end, where a row breaks that did not
 
   [[nodiscard]] static double& end_of(RowChoice& choice, Index k, double way) {
-    if (k == Coordinates::depth) return way < 0.0 ? choice.cell.depth_from : choice.cell.depth_to;
-    return way < 0.0 ? choice.cell.crack_from : choice.cell.crack_to;
+    if (k == Coordinates::depth) return way < 0.0 ? choice.sides.depth_from : choice.sides.depth_to;
+    return way < 0.0 ? choice.sides.crack_from : choice.sides.crack_to;
   }
 
   /// From the best one on in one direction, by steps that double; then back by halves to where it ends. False
@@ -101,13 +101,13 @@ class ChoiceSearch {
   [[nodiscard]] std::optional<RowChoice> tried(const RowChoice& near, Index k, double value) const {
     constexpr int most_steps = 8;
     Eigen::VectorXd at = near.at;
-    if (k == Coordinates::crack) at = near.cell.moved_to(at, value);
+    if (k == Coordinates::crack) at = near.sides.moved_to(at, value);
     at[k] = std::log(value);
     FractureCell cell = objective_.cell(at);
     const Minimum minimum = least_in_cell(coordinates_, cell, at, most_steps);
     const double rise = rise_of(minimum.sums.squares);
     if (!(rise < quantile_ * quantile_)) return std::nullopt;
-    return RowChoice{minimum.at, std::move(cell), std::sqrt(quantile_ * quantile_ - rise)};
+    return RowChoice{minimum.at, std::move(cell.sides), std::sqrt(quantile_ * quantile_ - rise)};
   }
   [[nodiscard]] double rise_of(double squares) const { return std::max(0.0, squares - least_) / unit_; }
 
@@ -116,8 +116,8 @@ class ChoiceSearch {
   double most_m_, least_, unit_, quantile_;
 };
 
-bool any_is_whole(const RowChoice& choice) { return choice.cell.depth_from > 0.0; }
-bool any_broke(const RowChoice& choice) { return std::isfinite(choice.cell.depth_to); }
+bool any_is_whole(const RowChoice& choice) { return choice.sides.depth_from > 0.0; }
+bool any_broke(const RowChoice& choice) { return std::isfinite(choice.sides.depth_to); }
 
 /// Between which logarithms a parameter lies; infinite: no limit.
 struct Span {
@@ -153,10 +153,10 @@ Span span_over(const std::vector<RowChoice>& choices, const Coordinates& coordin
     double half = 0.0;
     for (const bool up : {false, true}) {
       Eigen::VectorXd end = choice.at;
-      const auto [from, to] = choice.cell.depths_at(std::exp(choice.at[Coordinates::crack]));
+      const auto [from, to] = choice.sides.depths_at(std::exp(choice.at[Coordinates::crack]));
       if (by_rows)
         end[Coordinates::depth] =
-            std::log(up ? std::max(to, choice.cell.depth_to) : std::min(from, choice.cell.depth_from));
+            std::log(up ? std::max(to, choice.sides.depth_to) : std::min(from, choice.sides.depth_from));
       const Eigen::Vector3d gradient = gradient_of(coordinates, end, k);
       if (by_rows) middle[up ? 1 : 0] = std::log(coordinates.values(end)[static_cast<std::size_t>(k)]);
       if (std::isfinite(end[Coordinates::depth]))

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "starts/search.h"
 #include "uncertainty/limits.h"
+#include "starts/search.h"
 
 namespace kerf::fitting {
 

@@ -32,19 +32,7 @@ FractureRows::FractureRows(const RobustLoss& loss, double crack_m, std::size_t m
   whole_.reserve(most_rows);
 }
 
-void FractureRows::add(const FractureRow& row, double force_n, double weight) {
-  if (row.pushes && row.mode == FractureRow::Mode::deformation) {
-    whole_.add(row.depth, row.moves, force_n, weight);
-  } else if (row.pushes) {
-    cut_.force.push_back(force_n);
-    cut_.weight.push_back(weight);
-  } else {
-    without_force_ += loss_(weight * force_n * force_n).rho;
-  }
-}
-
 void FractureRows::end() {
-  whole_.end();
   for (std::size_t i = 0; i < cut_.force.size(); ++i) {
     cut_.weights += cut_.weight[i];
     cut_.mean += cut_.weight[i] * cut_.force[i];

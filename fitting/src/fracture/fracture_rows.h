@@ -21,23 +21,32 @@ struct FractureRow {
   double moves;  ///< by how many cracks that ran ahead of the tool the tip had come there
 };
 
+/// Tissue of one newton, however deep: which rows break does not depend on how stiff the tissue is, and
+/// its energy costs next to nothing.
+struct LightTissue {
+  double yields_at_m;
+  [[nodiscard]] static double growth(double depth_m) { return depth_m; }
+  [[nodiscard]] static double energy(double depth_m) { return depth_m; }
+  [[nodiscard]] static double force(double) { return 1.0; }
+  [[nodiscard]] double yield_depth() const { return yields_at_m; }
+};
+
 /// Runs the law along the samples, at one depth of yielding and one length of crack, and shows every row to
-/// `take`. Which rows break does not depend on how stiff the tissue is.
+/// `take`.
 template <typename Take>
 void walk(const Problem& problem, const Samples& samples, double depth_m, double crack_m, Take&& take) {
   constexpr double width_m = 0.01;
-  models::Fracture<double> law =
-      models::Fracture<double>::make(std::vector{1.0, 1e-6, 1.0, 1.0, width_m}, problem.law_options);
-  law.yield_energy =
-      law.amplitude * law.thickness / law.exponent * std::expm1(law.exponent * depth_m / law.thickness);
-  law.toughness = law.yield_energy / (crack_m * width_m);
+  const LightTissue tissue{depth_m};
+  const double energy_j = LightTissue::energy(depth_m);
+  const auto law = models::Fracture<double>::make(
+      std::vector{1.0, 1.0, energy_j, energy_j / (crack_m * width_m), width_m}, problem.law_options);
   for (const Run& run : samples.runs) {
     models::Fracture<double>::State state;
     double moves = 0.0;
     for (std::size_t i = run.begin; i < run.end; ++i) {
       const double tip = state.surface;
       const double x = samples.motion[i].penetration;
-      const double force = law.step(state, samples.motion[i], samples.period_s[i]);
+      const double force = law.step_through(state, samples.motion[i], tissue);
       take(FractureRow{i, state.mode, force > 0.0, tip, x - tip, moves});
       if (state.surface != tip) moves = state.surface > x ? moves + 1.0 : 0.0;
     }
@@ -56,7 +65,17 @@ class FractureRows {
  public:
   FractureRows(const RobustLoss& loss, double crack_m, std::size_t most_rows);
 
-  void add(const FractureRow& row, double force_n, double weight);
+  void add(const FractureRow& row, double force_n, double weight) {
+    if (row.pushes && row.mode == FractureRow::Mode::deformation) {
+      whole_.add(row.depth, row.moves, force_n, weight);
+    } else if (row.pushes) {
+      cut_.force.push_back(force_n);
+      cut_.weight.push_back(weight);
+    } else {
+      const double square = weight * force_n * force_n;
+      without_force_ += loss_.kind == Loss::squares ? square : loss_(square).rho;
+    }
+  }
   void end();
 
   /// By all four coordinates, of which depth and crack leave every row on its side.

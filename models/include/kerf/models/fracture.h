@@ -117,6 +117,25 @@ struct Fracture {
   [[nodiscard]] T stored_energy(const State& state) const noexcept { return state.stored; }
 
   T step(State& state, const MotionOf<Signal<T>>& motion, Signal<T>) const noexcept {
+    return step_through(state, motion, Stiffening{*this});
+  }
+
+  /// Tissue as it is deformed, alpha exp(beta d / L0).
+  struct Stiffening {
+    const Fracture& law;
+    [[nodiscard]] T growth(const T& depth) const {  ///< exp(beta d / L0) - 1
+      using std::expm1;
+      return expm1(law.exponent * (depth / law.thickness));
+    }
+    [[nodiscard]] T energy(const T& growth) const {
+      return law.amplitude * law.thickness / law.exponent * growth;
+    }
+    [[nodiscard]] T force(const T& growth) const { return law.amplitude * (growth + 1.0); }
+    [[nodiscard]] T yield_depth() const { return law.yield_depth(); }
+  };
+  /// The same path, whatever the tissue is like that yields at Uy.
+  template <typename Tissue>
+  T step_through(State& state, const MotionOf<Signal<T>>& motion, const Tissue& tissue) const noexcept {
     const Signal<T> x = motion.penetration;
     if (state.mode == Mode::fracture) {
       state.mode = x < state.surface - hysteresis ? Mode::free : Mode::cutting;
@@ -128,7 +147,7 @@ struct Fracture {
       return cutting_force();
     }
     if (state.mode == Mode::cutting) state.mode = Mode::free;
-    return deform(state, x);
+    return deform(state, x, tissue);
   }
 
  private:
@@ -136,8 +155,8 @@ struct Fracture {
   [[nodiscard]] bool goes_on(const State& state, const MotionOf<Signal<T>>& motion) const noexcept {
     return motion.velocity > 0.0 || (hysteresis > 0.0 && motion.penetration >= state.surface - hysteresis);
   }
-  T deform(State& state, Signal<T> x) const noexcept {
-    using std::expm1;
+  template <typename Tissue>
+  T deform(State& state, Signal<T> x, const Tissue& tissue) const noexcept {
     const T depth = x - state.surface;
     if (depth <= 0.0) {
       state.work = state.work - state.stored;
@@ -145,19 +164,19 @@ struct Fracture {
       state.mode = Mode::free;
       return T(0.0);
     }
-    const T growth = expm1(exponent * (depth / thickness));
-    const T energy = amplitude * thickness / exponent * growth;
+    const T growth = tissue.growth(depth);
+    const T energy = tissue.energy(growth);
     if (energy < yield_energy) {
       state.work = state.work + energy - state.stored;
       state.stored = energy;
       state.mode = Mode::deformation;
-      return amplitude * (growth + 1.0);
+      return tissue.force(growth);
     }
     // The tissue yielded at Uy, within the tick; what was left of the travel was cut.
     state.work = state.work - state.stored;  // grow() enters all of Uy, as crack
     state.stored = T(0.0);
     grow(state, yield_energy);
-    const T yielded = state.surface + yield_depth();
+    const T yielded = state.surface + tissue.yield_depth();
     const T tip = state.surface + crack_of_a_fracture();
     state.surface = greater(yielded, tip);
     if (x > state.surface) {
