@@ -8,10 +8,10 @@ namespace kerf::fitting::wide {
 
 /// Friction (kerf/models/friction.h) in columns 1, x, v, Dahl's state z, and h = dz / d log(xd):
 ///
-///     z[n+1] = z[n] - (z[n] - s) (1 - e),     e = exp(-|dx| / xd), s = sgn dx
-///     h[n+1] = h[n] - h[n] (1 - e) + (z[n] - s) e |dx| / xd
+///     z[n+1] = z[n] e + s (1 - e),     e = exp(-|dx| / xd), s = sgn dx
+///     h[n+1] = h[n] e + (z[n] - s) e |dx| / xd
 ///
-/// Decays four rows at a time, the states one after another.
+/// Decays four rows at a time, the states two.
 class Friction {
  public:
   explicit Friction(const models::Friction<double>& law) : law_(law) {}

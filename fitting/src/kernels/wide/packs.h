@@ -46,25 +46,47 @@ KERF_PACK Pack two_later(const Pack& before, const Pack& pack) {
 }
 KERF_PACK Pack last_of(const Pack& pack) { return __builtin_shufflevector(pack, pack, 3, 3, 3, 3); }
 
-/// exp, right to two units of the last place: 2^n times the series of what is left, at most ln(2) / 2 (Cody
-/// and Waite's reduction). Zero below -708 and exp(709), whose square is infinite, above 709.
-KERF_PACK Pack exp(const Pack& x) {
+/// An exponent as n ln(2) and what is left, at most ln(2) / 2 (Cody and Waite's reduction).
+struct Reduced {
+  Bits power;  ///< n, in the exponent of a double
+  Pack left;
+};
+KERF_PACK Reduced reduced(const Pack& x) {
   constexpr double shift = 0x1.8p52;  // where the last place of a double is one
-  constexpr double least = -708.0;
-  constexpr double most = 709.0;
-  const Pack below = x < most ? x : all(most);
-  const Pack inside = below > least ? below : all(least);
-  const Pack shifted = inside * 0x1.71547652b82fep0 + shift;
+  const Pack shifted = x * 0x1.71547652b82fep0 + shift;
   const Pack n = shifted - shift;
-  const Pack r = (inside - n * 0x1.62e42fee00000p-1) - n * 0x1.a39ef35793c76p-33;
+  return {reinterpret_cast<Bits>(shifted) << 52, (x - n * 0x1.62e42fee00000p-1) - n * 0x1.a39ef35793c76p-33};
+}
+/// first + r + r^2 / 2 + ..., |r| <= ln(2) / 2.
+KERF_PACK Pack exp_series(double first, const Pack& r) {
   const Pack rr = r * r;
   const Pack r4 = rr * rr;
-  const Pack low = (1.0 + r) + rr * (1.0 / 2.0 + r * (1.0 / 6.0));
+  const Pack low = (first + r) + rr * (1.0 / 2.0 + r * (1.0 / 6.0));
   const Pack middle = (1.0 / 24.0 + r * (1.0 / 120.0)) + rr * (1.0 / 720.0 + r * (1.0 / 5040.0));
   const Pack high = (1.0 / 40320.0 + r * (1.0 / 362880.0)) + rr * (1.0 / 3628800.0 + r * (1.0 / 39916800.0));
-  const Pack series = low + r4 * (middle + r4 * (high + r4 * (1.0 / 479001600.0)));
-  const Bits scaled = reinterpret_cast<Bits>(series) + (reinterpret_cast<Bits>(shifted) << 52);
-  return where(x >= least, reinterpret_cast<Pack>(scaled));
+  return low + r4 * (middle + r4 * (high + r4 * (1.0 / 479001600.0)));
+}
+
+inline constexpr double least_exponent = -708.0;  ///< exp() is zero below
+/// exp, right to two units of the last place; exp(709), whose square is infinite, above 709.
+KERF_PACK Pack exp(const Pack& x) {
+  constexpr double most = 709.0;
+  const Pack below = x < most ? x : all(most);
+  const Reduced by = reduced(below > least_exponent ? below : all(least_exponent));
+  const Bits scaled = reinterpret_cast<Bits>(exp_series(1.0, by.left)) + by.power;
+  return where(x >= least_exponent, reinterpret_cast<Pack>(scaled));
+}
+
+/// exp(-q) and 1 - exp(-q), q >= 0, each to its own last places.
+struct Decay {
+  Pack left, loss;
+};
+KERF_PACK Decay decay(const Pack& q) {
+  const Bits some = q <= -least_exponent;
+  const Reduced by = reduced(some ? -q : all(least_exponent));
+  const Pack scale = where(some, reinterpret_cast<Pack>(reinterpret_cast<Bits>(all(1.0)) + by.power));
+  const Pack change = scale * exp_series(0.0, by.left);
+  return {scale + change, (1.0 - scale) - change};
 }
 #undef KERF_PACK
 
