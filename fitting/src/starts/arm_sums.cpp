@@ -5,8 +5,6 @@
 #include <numbers>
 #include <utility>
 
-#include <boost/math/special_functions/chebyshev.hpp>
-
 namespace kerf::fitting {
 namespace {
 
@@ -90,50 +88,30 @@ Decades decades_of(const Samples& samples) {
 }
 
 ArmSeries::ArmSeries(double shortest_s, double longest_s, double motion_s)
-    : middle_(0.5 * (std::log(shortest_s) + std::log(longest_s))),
-      half_(0.5 * (std::log(longest_s) - std::log(shortest_s))),
-      motion_s_(motion_s),
-      terms_(1 +
-             std::lround(std::ceil(-std::log(series_error) / std::asinh(std::numbers::pi / 2.0 / half_)))) {}
+    : series_(std::log(shortest_s), std::log(longest_s),
+              terms_that_leave(series_error, std::numbers::pi / 2.0, std::log(longest_s / shortest_s))),
+      motion_s_(motion_s) {}
 
-double ArmSeries::shortest_s() const { return std::exp(middle_ - half_); }
-double ArmSeries::longest_s() const { return std::exp(middle_ + half_); }
+double ArmSeries::shortest_s() const { return std::exp(series_.lower()); }
+double ArmSeries::longest_s() const { return std::exp(series_.upper()); }
 
 std::vector<double> ArmSeries::nodes_s() const {
-  std::vector<double> nodes;
-  for (Eigen::Index j = 0; j < terms_; ++j) {
-    const double angle = std::numbers::pi * (static_cast<double>(j) + 0.5) / static_cast<double>(terms_);
-    nodes.push_back(std::exp(middle_ + half_ * std::cos(angle)));
-  }
+  std::vector<double> nodes = series_.nodes();
+  for (double& node : nodes) node = std::exp(node);
   return nodes;
 }
 
 Eigen::MatrixXd ArmSeries::from_nodes() const {
-  Eigen::MatrixXd cosines(terms_, terms_);
-  const auto n = static_cast<double>(terms_);
   const std::vector<double> nodes = nodes_s();
-  for (Eigen::Index k = 0; k < terms_; ++k) {
-    for (Eigen::Index j = 0; j < terms_; ++j) {
-      const double angle = std::numbers::pi * static_cast<double>(k) * (static_cast<double>(j) + 0.5) / n;
-      const double scale = 1.0 + motion_s_ / nodes[static_cast<std::size_t>(j)];
-      cosines(k, j) = scale * (k == 0 ? 1.0 : 2.0) / n * std::cos(angle);
-    }
-  }
-  return cosines;
+  const Eigen::Map<const Eigen::ArrayXd> times(nodes.data(), terms());
+  return series_.from_nodes() * (1.0 + motion_s_ / times).matrix().asDiagonal();
 }
 
 ArmSeries::At ArmSeries::at(double log_time) const {
-  const double u = (log_time - middle_) / half_;
   const double share = 1.0 / (1.0 + motion_s_ * std::exp(-log_time));
-  At at{.value = Eigen::VectorXd(terms_), .slope = Eigen::VectorXd(terms_)};
-  double t = 1.0, t_before = u;               // T_0, T_-1
-  double second = 0.0, second_before = -1.0;  // U_-1, U_-2 of the second kind: dT_k / du = k U_k-1
-  for (Eigen::Index k = 0; k < terms_; ++k) {
-    at.value[k] = share * t;
-    at.slope[k] = share * (static_cast<double>(k) * second / half_ + (1.0 - share) * t);
-    t_before = std::exchange(t, boost::math::chebyshev_next(u, t, t_before));
-    second_before = std::exchange(second, boost::math::chebyshev_next(u, second, second_before));
-  }
+  At at = series_.at(log_time);
+  at.slope = share * (at.slope + (1.0 - share) * at.value);
+  at.value *= share;
   return at;
 }
 

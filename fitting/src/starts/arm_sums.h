@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "chebyshev_series.h"
 #include "problem.h"
 
 namespace kerf::fitting {
@@ -32,7 +33,7 @@ class ArmSeries {
   /// @param motion_s              tau_m [s], > 0
   ArmSeries(double shortest_s, double longest_s, double motion_s);
 
-  [[nodiscard]] Eigen::Index terms() const { return terms_; }
+  [[nodiscard]] Eigen::Index terms() const { return series_.terms(); }
   [[nodiscard]] double shortest_s() const;
   [[nodiscard]] double longest_s() const;
   /// Times at which the answers tell the series [s].
@@ -40,14 +41,12 @@ class ArmSeries {
   /// From answers at nodes_s() to c, terms x terms.
   [[nodiscard]] Eigen::MatrixXd from_nodes() const;
   /// What c_k counts for at a time, and its derivative by log tau.
-  struct At {
-    Eigen::VectorXd value, slope;
-  };
+  using At = ChebyshevSeries::At;
   [[nodiscard]] At at(double log_time) const;
 
  private:
-  double middle_, half_, motion_s_;
-  Eigen::Index terms_;
+  ChebyshevSeries series_;  ///< of g times (1 + tau_m / tau), in log tau
+  double motion_s_;
 };
 
 /// Products of a spring, of the terms of an arm, and of the force, summed over samples: the sum of squares of
