@@ -5,6 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include <Eigen/Core>
 #include <boost/math/statistics/univariate_statistics.hpp>
 
 namespace kerf::fitting {
@@ -12,7 +13,13 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& reason) { throw std::invalid_argument("cannot fit: " + reason); }
 
+using Numbers = Eigen::Map<const Eigen::ArrayXd>;
+Numbers numbers_of(std::span<const double> values) {
+  return {values.data(), static_cast<Eigen::Index>(values.size())};
+}
+
 void check_finite(std::span<const double> values, const char* name) {
+  if ((0.0 * numbers_of(values)).sum() == 0.0) return;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (std::isfinite(values[i])) continue;
     std::ostringstream reason;
@@ -31,12 +38,8 @@ double check_force(std::span<const double> force) {
     reason << "the force is " << force.front() << " throughout: a sensor that is stuck reads like that";
     refuse(reason.str());
   }
-  double squares = 0.0;
-  double largest = 0.0;
-  for (const double one : force) {
-    squares += one * one;
-    largest = std::max(largest, std::abs(one));
-  }
+  const double squares = numbers_of(force).square().sum();
+  const double largest = numbers_of(force).abs().maxCoeff();
   if (force.size() < enough || 2.0 * largest * largest <= squares) return largest;
   const auto first = std::ranges::find(force, largest, [](double one) { return std::abs(one); });
   std::ostringstream reason;
@@ -65,33 +68,38 @@ double check_columns(const Series& series) {
   return largest;
 }
 
-std::vector<double> periods(std::span<const double> time_s, double& median_period_s) {
-  std::vector<double> all(time_s.size(), 0.0);
-  double shortest = time_s[1] - time_s[0];
-  double longest = shortest;
-  for (std::size_t i = 1; i < time_s.size(); ++i) {
-    all[i] = time_s[i] - time_s[i - 1];
-    shortest = std::min(shortest, all[i]);
-    longest = std::max(longest, all[i]);
-  }
+/// Since the sample before; the first has that of the second.
+struct Periods {
+  std::vector<double> all;
+  double median_s;
+  bool are_even;  ///< but for rounding, which is taken out
+};
+Periods periods_of(std::span<const double> time_s) {
+  Periods periods{.all = std::vector<double>(time_s.size()), .median_s = 0.0, .are_even = false};
+  std::vector<double>& all = periods.all;
+  const auto between = static_cast<Eigen::Index>(time_s.size() - 1);
+  Eigen::Map<Eigen::ArrayXd> each(all.data() + 1, between);
+  each = numbers_of(time_s).tail(between) - numbers_of(time_s).head(between);
   all[0] = all[1];
+  const double shortest = each.minCoeff();
   if (!(shortest > 0.0)) {
     const auto first =
         std::find_if(all.begin() + 1, all.end(), [](double period) { return !(period > 0.0); });
     refuse("the time does not increase at sample " + std::to_string(first - all.begin()));
   }
-  if (longest - shortest < 1e-6 * shortest) {
-    median_period_s = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
-    all.assign(all.size(), median_period_s);
-    return all;
+  if (each.maxCoeff() - shortest < 1e-6 * shortest) {
+    periods.median_s = (time_s.back() - time_s.front()) / static_cast<double>(between);
+    periods.are_even = true;
+    all.assign(all.size(), periods.median_s);
+    return periods;
   }
-  std::vector<double> between(all.begin() + 1, all.end());
-  median_period_s = boost::math::statistics::median(between);
+  std::vector<double> sorted(all.begin() + 1, all.end());
+  periods.median_s = boost::math::statistics::median(sorted);
   // Uniform sampling up to rounding is uniform: laws keep what they derive from the period.
   for (double& period : all) {
-    if (std::abs(period - median_period_s) < 1e-6 * median_period_s) period = median_period_s;
+    if (std::abs(period - periods.median_s) < 1e-6 * periods.median_s) period = periods.median_s;
   }
-  return all;
+  return periods;
 }
 
 /// Where there are no cycles, each fold takes blocks of time from all over the recording: what happens once,
@@ -146,10 +154,14 @@ Samples check_series(std::span<const Series> recordings, const FoldOptions& opti
     samples.largest_force = std::max(samples.largest_force, check_columns(series));
     const Run run{
         .begin = samples.size(), .end = samples.size() + series.force.size(), .noise_n = series.noise_n};
-    double median_period_s = 0.0;
-    const auto run_periods = periods(series.time_s, median_period_s);
-    if (samples.runs.empty()) samples.median_period_s = median_period_s;
-    samples.period_s.insert(samples.period_s.end(), run_periods.begin(), run_periods.end());
+    Periods periods = periods_of(series.time_s);
+    if (samples.runs.empty()) {
+      samples.median_period_s = periods.median_s;
+      samples.period_s = std::move(periods.all);
+    } else {
+      samples.period_s.insert(samples.period_s.end(), periods.all.begin(), periods.all.end());
+    }
+    samples.is_even = samples.is_even && periods.are_even && periods.median_s == samples.median_period_s;
     samples.force.insert(samples.force.end(), series.force.begin(), series.force.end());
     samples.counts.insert(samples.counts.end(), series.counts.begin(), series.counts.end());
     samples.counts.resize(samples.size(), 1);
@@ -184,24 +196,25 @@ Samples thinned(const Samples& samples, std::size_t count) {
               .largest_force = samples.largest_force,
               .median_period_s = samples.median_period_s,
               .duration_s = samples.duration_s,
-              .has_cycles = samples.has_cycles};
+              .has_cycles = samples.has_cycles,
+              .is_even = samples.is_even};
+  // Equal but for rounding is equal: laws keep what they derive from the period.
+  const double usual_s = static_cast<double>(step) * samples.median_period_s;
+  const auto since = [&](std::size_t before, std::size_t i) {
+    if (samples.is_even) return usual_s;
+    double period_s = 0.0;
+    for (std::size_t k = before + 1; k <= i; ++k) period_s += samples.period_s[k];
+    return std::abs(period_s - usual_s) < 1e-9 * usual_s ? usual_s : period_s;
+  };
   for (const Run& run : samples.runs) {
     Run short_run{.begin = few.size(), .end = 0, .noise_n = run.noise_n};
-    double period_s = 0.0;
-    std::size_t until_next = 1;
-    for (std::size_t i = run.begin; i < run.end; ++i) {
-      period_s += samples.period_s[i];
-      if (--until_next > 0) continue;
-      until_next = step;
+    for (std::size_t i = run.begin; i < run.end; i += step) {
       few.motion.push_back(samples.motion[i]);
-      // Equal but for rounding is equal: laws keep what they derive from the period.
-      const double usual_s = static_cast<double>(step) * samples.median_period_s;
-      few.period_s.push_back(std::abs(period_s - usual_s) < 1e-9 * usual_s ? usual_s : period_s);
+      few.period_s.push_back(i == run.begin ? samples.period_s[i] : since(i - step, i));
       few.force.push_back(samples.force[i]);
       few.counts.push_back(samples.counts[i]);
       few.cycle.push_back(samples.cycle[i]);
       few.fold.push_back(samples.fold[i]);
-      period_s = 0.0;
     }
     short_run.end = few.size();
     few.runs.push_back(short_run);

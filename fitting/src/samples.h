@@ -32,6 +32,7 @@ struct Samples {
   double median_period_s = 0.0;
   double duration_s = 0.0;  ///< of the longest run
   bool has_cycles = false;
+  bool is_even = true;  ///< one period throughout
 
   static constexpr std::uint32_t no_fold = static_cast<std::uint32_t>(-1);
   static constexpr std::uint32_t test = static_cast<std::uint32_t>(-2);  ///< a fold that no fit sees
