@@ -19,21 +19,23 @@ namespace {
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
-/// Root mean square of the residuals that are chosen; NaN if none is.
-template <typename Chosen>
-double rms_of(const std::vector<double>& residuals, Chosen&& chosen) {
-  double squares = 0.0;
-  double count = 0.0;
+/// Root mean squares of what a fit saw, and of what was held back for a test; NaN of none.
+struct RootMeanSquares {
+  double seen = nothing, test = nothing;
+};
+RootMeanSquares rms_of(const std::vector<double>& residuals, const Samples& samples) {
+  struct Sum {
+    double squares = 0.0, count = 0.0;
+    [[nodiscard]] double rms() const { return count > 0.0 ? std::sqrt(squares / count) : nothing; }
+  };
+  Sum seen, test;
   for (std::size_t i = 0; i < residuals.size(); ++i) {
-    if (!chosen(i)) continue;
-    squares += residuals[i] * residuals[i];
-    count += 1.0;
+    if (samples.counts[i] == 0) continue;
+    Sum& sum = samples.fold[i] == Samples::test ? test : seen;
+    sum.squares += residuals[i] * residuals[i];
+    sum.count += 1.0;
   }
-  return count > 0.0 ? std::sqrt(squares / count) : nothing;
-}
-
-auto in_test(const Samples& samples) {
-  return [&](std::size_t i) { return samples.fold[i] == Samples::test && samples.counts[i] != 0; };
+  return {.seen = seen.rms(), .test = test.rms()};
 }
 
 void tell_a_part(const FitOptions& options) {
@@ -42,31 +44,32 @@ void tell_a_part(const FitOptions& options) {
 
 void measure_errors(FitResult& result, const std::vector<double>& residuals, const Samples& samples,
                     const Jnd& jnd) {
-  double n = 0.0, squares = 0.0, sum = 0.0, sum_of_squares = 0.0, felt = 0.0, most = 0.0;
+  double n = 0.0, sum = 0.0, sum_of_squares = 0.0, felt = 0.0, most = 0.0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (samples.fold[i] == Samples::test || samples.counts[i] == 0) continue;
     n += 1.0;
-    squares += residuals[i] * residuals[i];
     sum += samples.force[i];
     sum_of_squares += samples.force[i] * samples.force[i];
     most = std::max(most, std::abs(residuals[i]));
     felt += std::abs(residuals[i]) > jnd.at(samples.force[i]) ? 1.0 : 0.0;
   }
   const double total = sum_of_squares - sum * sum / n;
-  result.rmse = std::sqrt(squares / n);
+  const RootMeanSquares errors = rms_of(residuals, samples);
+  const double squares = n * errors.seen * errors.seen;
+  result.rmse = errors.seen;
   result.max_abs = most;
   result.r2 = total > 0.0 ? 1.0 - squares / total : 0.0;
   result.jnd_fraction = felt / n;
   result.effective_samples = n;
-  result.test_rmse = rms_of(residuals, in_test(samples));
+  result.test_rmse = errors.test;
 }
 
 /// The same of the law as it is rendered.
 void measure_rendered(FitResult& result, const std::vector<double>& residuals, const Samples& samples) {
   if (residuals.empty()) return;
-  result.rendered.rmse = rms_of(
-      residuals, [&](std::size_t i) { return samples.fold[i] != Samples::test && samples.counts[i] != 0; });
-  result.rendered.test_rmse = rms_of(residuals, in_test(samples));
+  const RootMeanSquares errors = rms_of(residuals, samples);
+  result.rendered.rmse = errors.seen;
+  result.rendered.test_rmse = errors.test;
 }
 
 /// A sensor at the end of its range repeats its largest number.
