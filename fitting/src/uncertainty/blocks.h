@@ -16,6 +16,7 @@ struct Linearisation {
   std::vector<std::size_t> cycle_ends;  ///< rows [0, e0), [e0, e1), ... are the cycles; empty: none are known
   std::vector<double> scale;  ///< of each parameter, what counts as a change as large as itself: 1 on a
                               ///< logarithmic scale, a typical size on a linear one; empty for ones
+  Eigen::MatrixXd normal{};   ///< J^T J; empty: not formed yet
 };
 
 /// Rows from `begin` to before `end`.

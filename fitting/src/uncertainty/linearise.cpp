@@ -68,11 +68,15 @@ Linearisation linearise(const LawObjective& objective, const Problem& problem, c
   Linearisation linear = rows_of(objective, coordinates_of(problem, solution.values), samples, weights, loss);
   const double force_rms =
       rms(Eigen::Map<const Eigen::VectorXd>(samples.force.data(), static_cast<Eigen::Index>(samples.size())));
+  linear.normal = gram(linear.jacobian);
+  const auto rows = static_cast<double>(std::max<Eigen::Index>(1, linear.jacobian.rows()));
   const auto coordinates = problem.all();
   const auto values = searched_values(problem, solution);
   for (std::size_t k = 0; k < coordinates.size(); ++k) {
-    linear.scale.push_back(scale_of(problem.parameters[coordinates[k].parameter], values[k], force_rms,
-                                    rms(linear.jacobian.col(static_cast<Eigen::Index>(k)))));
+    const auto place = static_cast<Eigen::Index>(k);
+    const double column_rms = std::sqrt(linear.normal(place, place) / rows);
+    linear.scale.push_back(
+        scale_of(problem.parameters[coordinates[k].parameter], values[k], force_rms, column_rms));
   }
   return linear;
 }

@@ -237,7 +237,7 @@ Uncertainty uncertainty_of(const Linearisation& linearisation, double confidence
   const Eigen::MatrixXd& jacobian = linearisation.jacobian;
   const Index p = jacobian.cols();
   const Index n = jacobian.rows();
-  const Eigen::MatrixXd normal = gram(jacobian);
+  const Eigen::MatrixXd normal = linearisation.normal.size() > 0 ? linearisation.normal : gram(jacobian);
   const Basis basis = normal.allFinite() ? basis_of(normal) : Basis{};
   Uncertainty result;
   Eigen::MatrixXd noise_of_normal = Eigen::MatrixXd::Zero(p, p);
