@@ -63,6 +63,11 @@ class LawObjective final : public Objective {
   [[nodiscard]] bool rows(const Eigen::VectorXd& at, Eigen::VectorXd& force, Eigen::MatrixXd& jacobian) const;
   [[nodiscard]] Values values_at(const Eigen::VectorXd& at) const;
 
+  [[nodiscard]] const Samples& samples() const { return samples_; }
+  [[nodiscard]] const Weights& weights() const { return weights_; }
+  /// The values near which it is looked at: those of what is held.
+  [[nodiscard]] const Values& near() const { return near_; }
+
  private:
   [[nodiscard]] std::vector<double> slopes(const std::vector<double>& values) const;
   /// The coordinates that move the law of a run, in the order of its parameters.

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "uncertainty/limits.h"
+#include "profiles/limits.h"
 #include "starts/search.h"
 
 namespace kerf::fitting {

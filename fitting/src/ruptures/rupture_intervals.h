@@ -2,9 +2,9 @@
 
 #include <string>
 
+#include "profiles/limits.h"
 #include "ruptures/rupture_cell.h"
 #include "starts/search.h"
-#include "uncertainty/limits.h"
 
 namespace kerf::fitting {
 

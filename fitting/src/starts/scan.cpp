@@ -75,13 +75,6 @@ double unit_of(const Problem& problem, const Samples& samples) {
   return 1.0;
 }
 
-std::vector<double> scanned_values(const Problem& problem, const Samples& samples) {
-  const models::ScanFacts& scan = problem.facts().scan;
-  std::vector<double> values(scan.values.begin(), scan.values.end());
-  for (double& value : values) value *= unit_of(problem, samples);
-  return scan.steps == 0 ? values : geometric(values.front(), values.back(), static_cast<int>(scan.steps));
-}
-
 /// One parameter takes one value after another; every other is linear.
 std::vector<LinearFamily> grid(const Problem& problem, const Samples& samples) {
   const std::size_t at = place_of(problem, problem.facts().scan.parameter);
@@ -116,6 +109,13 @@ std::vector<LinearFamily> families_of(const Problem& problem, const Samples& sam
 
 }  // namespace
 
+std::vector<double> scanned_values(const Problem& problem, const Samples& samples) {
+  const models::ScanFacts& scan = problem.facts().scan;
+  std::vector<double> values(scan.values.begin(), scan.values.end());
+  for (double& value : values) value *= unit_of(problem, samples);
+  return scan.steps == 0 ? values : geometric(values.front(), values.back(), static_cast<int>(scan.steps));
+}
+
 LinearFamily family_of(const Problem& problem, const std::vector<double>& values,
                        const std::vector<bool>& linear) {
   const auto all = static_cast<Eigen::Index>(values.size());
@@ -139,24 +139,27 @@ LinearFamily family_of(const Problem& problem, const std::vector<double>& values
   return family;
 }
 
+bool sums_of(const Problem& problem, const Samples& samples, const Weights& weights,
+             const std::vector<double>& values, Sums& sums) {
+  const std::vector<double> slope(values.size(), 1.0);
+  const LawPoint point{.values = values, .slope = slope, .options = problem.law_options};
+  const auto all = static_cast<Eigen::Index>(values.size());
+  sums = {.squares = 0.0, .score = Eigen::VectorXd::Zero(all), .normal = Eigen::MatrixXd::Zero(all, all)};
+  for (std::size_t run = 0; run < samples.runs.size(); ++run) {
+    Sums part;
+    if (!kernel_of(problem.model).sums(point, view_of(samples, weights, run), {}, part)) return false;
+    sums.squares += part.squares;
+    sums.score += part.score;
+    sums.normal += part.normal;
+  }
+  return true;
+}
+
 Start best_of_family(const Problem& problem, const Samples& samples, const Weights& weights,
                      const LinearFamily& family) {
-  const auto sums_at = [&](const std::vector<double>& values, Sums& all) {
-    const std::vector<double> slope(values.size(), 1.0);
-    const LawPoint point{.values = values, .slope = slope, .options = problem.law_options};
-    all = {.squares = 0.0,
-           .score = Eigen::VectorXd::Zero(family.base.size()),
-           .normal = Eigen::MatrixXd::Zero(family.base.size(), family.base.size())};
-    for (std::size_t run = 0; run < samples.runs.size(); ++run) {
-      Sums part;
-      if (!kernel_of(problem.model).sums(point, view_of(samples, weights, run), {}, part)) return false;
-      all.squares += part.squares;
-      all.score += part.score;
-      all.normal += part.normal;
-    }
-    return true;
-  };
-  return best_of_family(problem, family, sums_at);
+  return best_of_family(problem, family, [&](const std::vector<double>& values, Sums& sums) {
+    return sums_of(problem, samples, weights, values, sums);
+  });
 }
 
 Start best_of_family(const Problem& problem, const LinearFamily& family,

@@ -28,6 +28,14 @@ struct Start {
     const Problem& problem, const LinearFamily& family,
     const std::function<bool(const std::vector<double>& values, Sums& sums)>& sums_at);
 
+/// What the law leaves at some values, the same in all recordings, with a column for each parameter; false:
+/// there is nothing.
+[[nodiscard]] bool sums_of(const Problem& problem, const Samples& samples, const Weights& weights,
+                           const std::vector<double>& values, Sums& sums);
+
+/// Values of the parameter that a law is scanned over (models::Scan::values).
+[[nodiscard]] std::vector<double> scanned_values(const Problem& problem, const Samples& samples);
+
 /// The family of all parameters that are named linear, the others held at these values.
 [[nodiscard]] LinearFamily family_of(const Problem& problem, const std::vector<double>& values,
                                      const std::vector<bool>& linear);

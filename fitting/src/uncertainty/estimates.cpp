@@ -7,12 +7,13 @@
 
 #include "fracture/fracture_intervals.h"
 #include "infinite.h"
+#include "profiles/limits.h"
+#include "profiles/profile.h"
+#include "profiles/separable.h"
 #include "ruptures/rupture_intervals.h"
 #include "tables.h"
 #include "uncertainty/arms.h"
-#include "uncertainty/limits.h"
 #include "uncertainty/linearise.h"
-#include "uncertainty/profile.h"
 #include "uncertainty/statistics.h"
 
 namespace kerf::fitting {
@@ -223,7 +224,7 @@ class Estimation {
                                                   Uncertainty& uncertainty) const {
     Sums sums{.squares = linear.residuals.squaredNorm(),
               .score = linear.jacobian.transpose() * linear.residuals,
-              .normal = gram(linear.jacobian)};
+              .normal = linear.normal};
     if (loss_.kind != Loss::squares && !objective.evaluate(at, sums))  // whose squares cost less
       return std::vector<Limits>(uncertainty.determined.size());
     Eigen::MatrixXd hessian = sums.normal;
@@ -231,7 +232,12 @@ class Estimation {
       hessian = hessian_of(objective, at, sums);
       take_curvature(uncertainty, sums, hessian);
     }
-    return limits_of(inner, objective, at, sums, hessian, uncertainty, linear.scale, options_.threads);
+    const auto cheaper = [&]() -> std::unique_ptr<const Objective> {
+      if (loss_.kind != Loss::squares) return nullptr;
+      return SeparableSums::around(objective, inner, weights_, at, linear.residuals);
+    };
+    return limits_of(inner, objective, at, sums, hessian, uncertainty, linear.scale, options_.threads,
+                     cheaper);
   }
 
   void take(const Problem& inner, const Uncertainty& uncertainty, const std::vector<Limits>& limits) {
@@ -268,7 +274,7 @@ class Estimation {
     constexpr double negligible = 0.02;  // of the rise in one standard error
     result_.correlation_time = correlation_time({linear.residuals.begin(), linear.residuals.end()});
     const Eigen::VectorXd score = linear.jacobian.transpose() * linear.residuals;
-    const double promise = score.dot(solve_normal(gram(linear.jacobian), score));
+    const double promise = score.dot(solve_normal(linear.normal, score));
     const double unit = linear.residuals.squaredNorm() * result_.correlation_time /
                         static_cast<double>(linear.residuals.size());
     return promise <= negligible * unit;

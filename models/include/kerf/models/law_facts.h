@@ -72,6 +72,7 @@ struct ScanFacts {
   std::size_t steps = 0;  ///< so many in geometric steps from the first value to the last; 0: the values
   ScanUnit unit = ScanUnit::one;
   std::string_view option = {};  ///< of ScanUnit::per_depth
+  bool has_a_kink = false;       ///< of the force, at a place that goes with the parameter
 };
 
 /// Where an option comes from that is not given to a fit.

@@ -31,7 +31,8 @@ struct Precontact {
                                   .scan = {.over = Scan::values,
                                            .parameter = "width",
                                            .values = {0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0, 2.0},
-                                           .unit = ScanUnit::depth},
+                                           .unit = ScanUnit::depth,
+                                           .has_a_kink = true},
                                   .variants = {{.effects = {Effect::stiffening}}}};
 
   T stiffness{};  ///< K [N/m], > 0

@@ -1,15 +1,16 @@
-#include "uncertainty/limits.h"
+#include "profiles/limits.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
 #include "infinite.h"
+#include "profiles/ridge.h"
 #include "share_out.h"
-#include "uncertainty/ridge.h"
 #include "uncertainty/statistics.h"
 
 namespace kerf::fitting {
@@ -47,19 +48,22 @@ double unit_of_rise(const Uncertainty& uncertainty, const Eigen::MatrixXd& hessi
 }
 
 /// The value, outwards from the best, where the deviation reaches the limit; none where it does not before
-/// the bound.
-std::optional<double> where_it_reaches(Ridge& ridge, double best, double step, double bound, double limit) {
+/// the bound, or falls short of it there, or only because another one came to the end of its range.
+std::optional<double> where_it_reaches(Ridge& ridge, double best, double step, double bound,
+                                       const Bounds& ends, double limit) {
   constexpr int most_steps = 60;
+  constexpr int few_steps = 3;  // after which the bound itself is asked: there may be no limit at all
   ridge.begin_anew();
   double inner = best;
   double inner_miss = -limit;
   double outer = best;
   double outer_miss = 0.0;
   for (int i = 0; true; ++i) {
+    if (i == few_steps && ridge.deviation(bound, limit) < limit) return std::nullopt;
     outer = step < 0.0 ? std::max(best + step, bound) : std::min(best + step, bound);
-    outer_miss = ridge.deviation(outer) - limit;
+    outer_miss = ridge.deviation(outer, limit) - limit;
     if (outer_miss >= 0.0) break;
-    if (outer == bound || i == most_steps) return std::nullopt;
+    if (outer == bound || i == most_steps || ridge.came_to_an_end(ends)) return std::nullopt;
     ridge.keep();
     inner = outer;
     inner_miss = outer_miss;
@@ -74,7 +78,7 @@ std::optional<double> where_it_reaches(Ridge& ridge, double best, double step, d
     const double share =
         outer_miss <= far_beyond * limit ? inner_weight / (inner_weight - outer_weight) : 0.5;
     const double between = inner + std::clamp(share, 0.02, 0.98) * (outer - inner);
-    const double miss = ridge.deviation(between) - limit;
+    const double miss = ridge.deviation(between, limit) - limit;
     if (miss < 0.0) {
       ridge.keep();
       inner = between;
@@ -178,18 +182,23 @@ Bounds ends_of(const Problem& problem) {
   return ends;
 }
 
-Limits by_profile(Ridge ridge, const Bounds& bounds, const Bounds& ends, const Question& asked) {
+/// None where what the ridge says at an end is not so by the law itself.
+std::optional<Limits> by_profile(Ridge ridge, const Objective& law, const Bounds& bounds, const Bounds& ends,
+                                 const Question& asked) {
   const double step =
       std::isfinite(asked.half) && asked.half > 0.0 ? std::min(asked.half, asked.scale) : asked.scale;
   Limits limits{.by = IntervalBy::profile};
+  bool is_so = true;
   const auto reached = [&](double way, double bound) {
-    const auto at = where_it_reaches(ridge, asked.best, way, bound, asked.quantile);
+    const auto at = where_it_reaches(ridge, asked.best, way, bound, ends, asked.quantile);
+    is_so = is_so && ridge.is_so_by(law);
     return at && !ridge.came_to_an_end(ends) ? at : std::nullopt;
   };
   double without_it = infinite;
   if (may_be_zero(asked.info)) {
     ridge.begin_anew();
     without_it = ridge.deviation(none_on_scale(asked.info));
+    is_so = is_so && ridge.is_so_by(law);
     limits.p_zero = p_of(without_it, asked);
   }
   const bool down_to_none = is_one_sided(asked.info) && without_it <= (1.0 + near_enough) * asked.quantile;
@@ -200,6 +209,7 @@ Limits by_profile(Ridge ridge, const Bounds& bounds, const Bounds& ends, const Q
   } else if (const auto lower = reached(-step, bounds.lower[asked.k])) {
     limits.lower = from_search_scale(asked.info, *lower);
   }
+  if (!is_so) return std::nullopt;
   if (std::isinf(limits.lower) && std::isinf(limits.upper)) limits.by = IntervalBy::none;
   return limits;
 }
@@ -262,7 +272,8 @@ std::vector<Limits> wald_limits_of(const Problem& problem, const Eigen::VectorXd
 std::vector<Limits> limits_of(const Problem& problem, const LawObjective& objective,
                               const Eigen::VectorXd& at, const Sums& sums, const Eigen::MatrixXd& hessian,
                               const Uncertainty& uncertainty, const std::vector<double>& scale,
-                              std::size_t threads) {
+                              std::size_t threads,
+                              const std::function<std::unique_ptr<const Objective>()>& cheaper) {
   const Bounds bounds = problem.bounds();
   const auto coordinates = problem.all();
   const Bounds ends = ends_of(problem);
@@ -284,19 +295,32 @@ std::vector<Limits> limits_of(const Problem& problem, const LawObjective& object
                       std::ranges::any_of(questions, [&](const Question& asked) {
                         return asked.info.quantity == models::Quantity::position && !bends_evenly(asked);
                       });
-  std::vector<Limits> all(coordinates.size());
-  share_out(all.size(), threads, [&](std::size_t place) {
+  enum class Rule : std::uint8_t { none, wald, profile };
+  std::vector<Rule> rules(questions.size(), Rule::none);
+  share_out(questions.size(), threads, [&](std::size_t place) {
     const Question& asked = questions[place];
-    const Index k = asked.k;
     if (!smooth && !uncertainty.determined[place]) return;
     const bool like_wald = smooth ? asked.half <= short_half * asked.scale || bends_evenly(asked) : !uneven;
-    if (like_wald) {
-      all[place] = by_wald(asked);
-    } else {
-      all[place] =
-          by_profile(Ridge(objective, bounds, at, k, sums.squares, asked.unit, ahead_of(hessian, asked)),
-                     bounds, ends, asked);
-    }
+    rules[place] = like_wald ? Rule::wald : Rule::profile;
+  });
+  const bool any_profile = std::ranges::find(rules, Rule::profile) != rules.end();
+  const auto near = any_profile && cheaper ? cheaper() : nullptr;
+  std::optional<Elsewhere> elsewhere;
+  if (any_profile) elsewhere.emplace(problem, objective);
+  std::vector<Limits> all(questions.size());
+  share_out(questions.size(), threads, [&](std::size_t place) {
+    const Question& asked = questions[place];
+    if (rules[place] == Rule::wald) all[place] = by_wald(asked);
+    if (rules[place] != Rule::profile) return;
+    const RidgeAhead ahead = ahead_of(hessian, asked);
+    const auto along = [&](const Objective& by) {
+      return by_profile(Ridge(by, bounds, at, asked.k, sums.squares, asked.unit, *elsewhere, ahead),
+                        objective, bounds, ends, asked);
+    };
+    std::optional<Limits> found;
+    if (near) found = along(*near);
+    if (!found) found = along(objective);
+    all[place] = found.value_or(Limits{});
   });
   return all;
 }
@@ -307,10 +331,13 @@ Limits limits_above_zero(const Problem& problem, const LawObjective& objective, 
   const auto place = static_cast<std::size_t>(held);
   const models::ParameterInfo& info = problem.parameters[problem.all()[place].parameter];
   const double unit = unit_of_rise(uncertainty, sums.normal, sums, held);
-  Ridge ridge(objective, bounds, at, held, sums.squares, unit);
+  const Elsewhere elsewhere(problem, objective);
+  Ridge ridge(objective, bounds, at, held, sums.squares, unit, elsewhere);
   const double step = info.scale == models::Scale::logarithmic ? 1.0 : 1e-6 * info.upper;
-  const auto upper = where_it_reaches(ridge, at[held], step, bounds.upper[held], uncertainty.quantile[place]);
-  if (!upper || ridge.came_to_an_end(ends_of(problem))) return {};
+  const Bounds ends = ends_of(problem);
+  const auto upper =
+      where_it_reaches(ridge, at[held], step, bounds.upper[held], ends, uncertainty.quantile[place]);
+  if (!upper || ridge.came_to_an_end(ends)) return {};
   return {.lower = 0.0, .upper = from_search_scale(info, *upper), .by = IntervalBy::profile, .p_zero = 0.5};
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <functional>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "problem.h"
@@ -53,10 +55,14 @@ void take_curvature(Uncertainty& uncertainty, const Sums& sums, const Eigen::Mat
 /// deviation of the best fit without it, one-sided where it cannot be negative [SelfLiang1987].
 /// Coordinates are shared out among the threads; each is looked at alone.
 /// Source: [BatesWatts1988], section 6.1 (profiles).
-[[nodiscard]] std::vector<Limits> limits_of(const Problem& problem, const LawObjective& objective,
-                                            const Eigen::VectorXd& at, const Sums& sums,
-                                            const Eigen::MatrixXd& hessian, const Uncertainty& uncertainty,
-                                            const std::vector<double>& scale, std::size_t threads = 1);
+///
+/// @param cheaper  makes the same objective at less cost, if there is one; it is asked for profiles, and what
+///                 it says of their ends is held against the objective itself, which is asked where they
+///                 differ
+[[nodiscard]] std::vector<Limits> limits_of(
+    const Problem& problem, const LawObjective& objective, const Eigen::VectorXd& at, const Sums& sums,
+    const Eigen::MatrixXd& hessian, const Uncertainty& uncertainty, const std::vector<double>& scale,
+    std::size_t threads = 1, const std::function<std::unique_ptr<const Objective>()>& cheaper = {});
 
 /// The limit of a coordinate that lies at its lower bound, which stands for none.
 [[nodiscard]] Limits limits_above_zero(const Problem& problem, const LawObjective& objective,

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "infinite.h"
 #include "least_squares.h"
+#include "profiles/elsewhere.h"
 
 namespace kerf::fitting {
 
@@ -60,8 +62,9 @@ struct RidgeAhead {
 class Ridge {
  public:
   Ridge(const Objective& whole, const Bounds& bounds, const Eigen::VectorXd& best, Eigen::Index held,
-        double least, double unit, RidgeAhead ahead = {})
+        double least, double unit, const Elsewhere& elsewhere, RidgeAhead ahead = {})
       : whole_(whole),
+        elsewhere_(elsewhere),
         within_{without(bounds.lower, held), without(bounds.upper, held)},
         best_(without(best, held)),
         best_value_(best[held]),
@@ -93,29 +96,68 @@ class Ridge {
     rest_ = last_;
     value_ = last_value_;
   }
-  /// Infinite where there is nothing at this value.
-  [[nodiscard]] double deviation(double value) {
-    // Of one standard error, in which deviations are: the search need not end nearer.
-    constexpr double negligible = 1e-5;
+  /// Whether another objective has the same least sum of squares near where the last search ended.
+  [[nodiscard]] bool is_so_by(const Objective& other) const {
+    constexpr double negligible = 1e-2;  // of the rise in one standard error
+    if (&other == &whole_ || last_.size() == 0) return true;
+    const Minimum there = least_from(Held(other, held_, last_value_), last_);
+    return std::abs(there.sums.squares - last_squares_) <= negligible * unit_;
+  }
+  /// Infinite where there is nothing at this value. Where what the law leaves elsewhere is well within
+  /// `limit`, that is: the least may be less.
+  [[nodiscard]] double deviation(double value, double limit = 0.0) {
+    constexpr double well_within = 0.9;
     const Held held(whole_, held_, value);
-    Sums sums;
     last_value_ = value;
-    if (rest_.size() > 0) {
-      const double tolerance = std::clamp(negligible * unit_ / least_, 1e-10, 1e-6);
-      const double way = std::clamp(value - value_, -ahead_.reach, ahead_.reach);
-      Minimum minimum = minimise(held, rest_ + way * ahead_.slope, within_,
-                                 {.iterations = 200, .function_tolerance = tolerance});
-      if (!std::isfinite(minimum.sums.squares)) return infinite;
-      last_ = minimum.at;
-      sums = std::move(minimum.sums);
-    } else if (!held.evaluate(rest_, sums)) {
-      return infinite;
+    last_squares_ = infinite;
+    if (rest_.size() == 0) {
+      Sums sums;
+      return held.evaluate(rest_, sums) ? ended_at({}, sums.squares) : infinite;
     }
-    return std::sqrt(std::max(0.0, sums.squares - least_) / unit_);
+    const std::optional<Place> place = elsewhere(held, value);
+    if (place && deviation_of(place->squares) < well_within * limit)
+      return ended_at(place->at, place->squares);
+    const double way = std::clamp(value - value_, -ahead_.reach, ahead_.reach);
+    Minimum minimum = least_from(held, rest_ + way * ahead_.slope);
+    if (place && place->squares < minimum.sums.squares) {
+      Minimum other = least_from(held, place->at);
+      if (other.sums.squares < minimum.sums.squares) minimum = std::move(other);
+    }
+    if (!std::isfinite(minimum.sums.squares)) return infinite;
+    return ended_at(minimum.at, minimum.sums.squares);
   }
 
  private:
+  [[nodiscard]] double deviation_of(double squares) const {
+    return std::sqrt(std::max(0.0, squares - least_) / unit_);
+  }
+  [[nodiscard]] Minimum least_from(const Held& held, const Eigen::VectorXd& start) const {
+    // Of one standard error, in which deviations are: the search need not end nearer.
+    constexpr double negligible = 1e-5;
+    const double tolerance = std::clamp(negligible * unit_ / least_, 1e-10, 1e-6);
+    return minimise(held, start, within_, {.iterations = 200, .function_tolerance = tolerance});
+  }
+  /// Where the law leaves least elsewhere, and how much that is.
+  struct Place {
+    Eigen::VectorXd at;
+    double squares;
+  };
+  [[nodiscard]] std::optional<Place> elsewhere(const Held& held, double value) const {
+    const auto place = elsewhere_.least(held_, value);
+    if (!place) return std::nullopt;
+    Sums sums;
+    Eigen::VectorXd at = without(*place, held_);
+    if (!held.evaluate(at, sums)) return std::nullopt;
+    return Place{std::move(at), sums.squares};
+  }
+  double ended_at(const Eigen::VectorXd& at, double squares) {
+    last_ = at;
+    last_squares_ = squares;
+    return deviation_of(squares);
+  }
+
   const Objective& whole_;
+  const Elsewhere& elsewhere_;
   Bounds within_;
   Eigen::VectorXd best_;
   double best_value_;
@@ -125,6 +167,7 @@ class Ridge {
   double value_ = 0.0;  ///< of the held coordinate, at rest_
   Eigen::VectorXd last_{};
   double last_value_ = 0.0;
+  double last_squares_ = infinite;
   Eigen::Index held_;
   double least_;
   double unit_;

@@ -1,4 +1,4 @@
-#include "uncertainty/limits.h"
+#include "profiles/limits.h"
 
 #include <algorithm>
 #include <cmath>

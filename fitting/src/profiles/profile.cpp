@@ -1,10 +1,10 @@
-#include "uncertainty/profile.h"
+#include "profiles/profile.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "infinite.h"
-#include "uncertainty/ridge.h"
+#include "profiles/ridge.h"
 
 namespace kerf::fitting {
 namespace {
@@ -39,6 +39,7 @@ std::vector<Profile> profiles_of(const Problem& problem, const Samples& samples,
   const Eigen::VectorXd at = coordinates_of(problem, best);
   const auto coordinates = problem.all();
   const Bounds bounds = problem.bounds();
+  const Elsewhere elsewhere(problem, whole);
   Sums sums;
   if (!whole.evaluate(at, sums)) return {};
   std::vector<Profile> profiles;
@@ -51,7 +52,7 @@ std::vector<Profile> profiles_of(const Problem& problem, const Samples& samples,
     const double unit = error * error / std::max(inverse, 1e-300);  // S rises by this in one standard error
     const auto limit = uncertainty.quantile[index];
     std::vector<std::pair<double, double>> points{{at[k], 0.0}};
-    Ridge ridge(whole, bounds, at, k, sums.squares, unit);
+    Ridge ridge(whole, bounds, at, k, sums.squares, unit, elsewhere);
     for (const double side : {-1.0, 1.0}) {
       ridge.begin_anew();
       double away = 0.0;
