@@ -1,15 +1,19 @@
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <future>
 #include <iomanip>
 #include <iostream>
 #include <numbers>
 #include <random>
+#include <sstream>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <malloc.h>
@@ -24,8 +28,8 @@
 //         60,000 rows at 1 kHz: time, penetration, velocity, force, as float64
 //     kerf_fit_benchmark fit LAW FILE [TURNS [white]]
 //         parameters, covariance and intervals
-//     kerf_fit_benchmark laws FILE
-//         every law, with cross-validation by cycle
+//     kerf_fit_benchmark laws FILE [together]
+//         every law, with cross-validation by cycle: one after another, or beside each other
 //     kerf_fit_benchmark nist FOLDER [TURNS]
 //         the hardest problems of NIST StRD
 
@@ -36,6 +40,7 @@ constexpr int usual_rows = 60000;
 constexpr double period_s = 1e-3;
 constexpr double noise_n = 0.02;
 constexpr double stroke_hz = 0.7;
+constexpr std::size_t threads = 2;
 
 struct Recording {
   std::vector<double> time_s, penetration, velocity, force;
@@ -157,25 +162,46 @@ void fit_one(const std::string& law, const std::string& path, int turns, bool wh
   std::cout << "}\n";
 }
 
-void fit_all(const std::string& path) {
-  const Recording recording = read(path);
-  std::cout << '[';
-  const auto laws = fitting::fitted_laws();
-  for (const auto law : laws) {
-    std::cout << (law == laws.front() ? "\n" : ",\n") << " {\"law\": \"" << law << '"';
-    try {
-      fitting::FitResult result;
-      const double seconds =
-          seconds_of([&] { result = fitting::fit(law, recording.series(true), {.threads = 2}); });
-      std::cout << ", \"parameters\": " << result.free_parameters << ", \"rmse\": " << result.rmse
-                << ", \"cv_rmse\": " << (std::isfinite(result.cv_rmse) ? result.cv_rmse : -1.0)
-                << ", \"converged\": " << (result.converged ? "true" : "false")
-                << ", \"seconds\": " << seconds << '}';
-    } catch (const std::invalid_argument& refusal) {
-      std::cout << ", \"refused\": \"" << refusal.what() << "\"}";
-    }
+/// A law with its folds, in words of JSON.
+std::string fit_with_folds(std::string_view law, const Recording& recording) {
+  std::ostringstream text;
+  text << std::setprecision(17) << "{\"law\": \"" << law << '"';
+  try {
+    fitting::FitResult result;
+    const double seconds =
+        seconds_of([&] { result = fitting::fit(law, recording.series(true), {.threads = threads}); });
+    text << ", \"parameters\": " << result.free_parameters << ", \"rmse\": " << result.rmse
+         << ", \"cv_rmse\": " << (std::isfinite(result.cv_rmse) ? result.cv_rmse : -1.0)
+         << ", \"converged\": " << (result.converged ? "true" : "false") << ", \"seconds\": " << seconds
+         << '}';
+  } catch (const std::invalid_argument& refusal) {
+    text << ", \"refused\": \"" << refusal.what() << "\"}";
   }
-  std::cout << "]\n";
+  return text.str();
+}
+
+/// One law after another, or all beside each other, from the last on, as the program has them.
+void fit_all(const std::string& path, bool beside_each_other) {
+  const Recording recording = read(path);
+  const auto laws = fitting::fitted_laws();
+  std::vector<std::string> told(laws.size());
+  const double seconds = seconds_of([&] {
+    std::atomic<std::size_t> next{0};
+    const auto take = [&] {
+      for (std::size_t k = next++; k < laws.size(); k = next++) {
+        const std::size_t law = beside_each_other ? laws.size() - 1 - k : k;
+        told[law] = fit_with_folds(laws[law], recording);
+      }
+    };
+    std::vector<std::future<void>> helpers;
+    for (std::size_t i = 1; beside_each_other && i < threads; ++i)
+      helpers.push_back(std::async(std::launch::async, take));
+    take();
+    for (auto& helper : helpers) helper.get();
+  });
+  std::cout << "{\"seconds\": " << seconds << ", \"laws\": [";
+  for (const std::string& law : told) std::cout << (law == told.front() ? "\n " : ",\n ") << law;
+  std::cout << "\n]}\n";
 }
 
 void solve_all(const std::string& folder, int turns) {
@@ -209,10 +235,12 @@ void run(const std::vector<std::string>& given) {
   if (what == "make" && given.size() >= 3) return write(made(given[1], number_at(3, usual_rows)), given[2]);
   if (what == "fit" && given.size() >= 3)
     return fit_one(given[1], given[2], number_at(3), given.size() > 4 && given[4] == "white");
-  if (what == "laws" && given.size() == 2) return fit_all(given[1]);
+  if (what == "laws" && given.size() >= 2)
+    return fit_all(given[1], given.size() > 2 && given[2] == "together");
   if (what == "nist" && given.size() >= 2) return solve_all(given[1], number_at(2));
   throw std::invalid_argument(
-      "usage: kerf_fit_benchmark make LAW FILE [ROWS] | fit LAW FILE [TURNS [white]] | laws FILE | "
+      "usage: kerf_fit_benchmark make LAW FILE [ROWS] | fit LAW FILE [TURNS [white]] | laws FILE [together] "
+      "| "
       "nist FOLDER [TURNS]");
 }
 
