@@ -8,20 +8,17 @@
 namespace kerf::fitting {
 
 Elsewhere::Elsewhere(const Problem& problem, const LawObjective& law) : problem_(problem), best_(law.near()) {
-  const models::ScanFacts& scan = problem.facts().scan;
-  const bool differs = std::ranges::find(problem.own, true) != problem.own.end();
-  if (problem.facts().search != models::Search::descent || scan.over != models::Scan::values || differs)
-    return;
-  const auto bent = std::ranges::find(problem.parameters, scan.parameter, &models::ParameterInfo::name);
-  bent_ = static_cast<std::size_t>(bent - problem.parameters.begin());
-  if (!problem.free[bent_]) return;
+  const auto bent = scanned_parameter(problem);
+  if (!bent || std::ranges::find(problem.own, true) != problem.own.end()) return;
+  bent_ = *bent;
+  const models::ParameterInfo& info = problem.parameters[bent_];
   std::vector<double> values = scanned_values(problem, law.samples());
   // A search begins at what a motion can tell; a limit may be missing because of what it cannot.
   constexpr int decades = 4;
   for (int i = 0; i < decades; ++i) values.push_back(10.0 * *std::ranges::max_element(values));
   for (const double value : values) {
     Scanned one{.values = std::vector<double>(problem.parameters.size(), 1.0), .sums = {}};
-    one.values[bent_] = std::clamp(value, bent->lower, bent->upper);
+    one.values[bent_] = std::clamp(value, info.lower, info.upper);
     if (sums_of(problem, law.samples(), law.weights(), one.values, one.sums))
       scanned_.push_back(std::move(one));
   }

@@ -43,7 +43,8 @@ void take_curvature(Uncertainty& uncertainty, const Sums& sums, const Eigen::Mat
 ///    0.1, a tenth of the parameter on a logarithmic scale and of its scale on a linear one.
 /// 2. Wald's, where at both of its ends, the others following as if the sum of squares were a parabola, the
 ///    root of its rise is within 10 % of what a parabola has.
-/// 3. The profile of the sum of squares: where the root of its rise, in standard errors, reaches the
+/// 3. The profile of the sum of squares, the others at their best along the ridge from the estimate or
+///    elsewhere (elsewhere.h): where the root of its rise, in standard errors, reaches the
 ///    quantile; no limit on a side where it does not before the bound of the parameter, or only because
 ///    another one came to the end of its range. A lower bound that stands for none (may_be_zero()) is then
 ///    the limit, zero.

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <optional>
 
+#include "starts/scan.h"
+
 namespace kerf::fitting {
 namespace {
 
@@ -18,31 +20,23 @@ constexpr Index most_numbers = 6'000'000;  ///< in all columns
 /// An odd number: the best is one of the nodes.
 Index terms() { return terms_that_leave(series_error, std::numbers::pi / 2.0, 2.0 * reach) | 1; }
 
-/// The one coordinate that a law is scanned over because it is linear in all others, and how far it is
-/// followed.
+/// The one coordinate that a law is not linear in, and how far it is followed.
 struct Bent {
   Index coordinate;
   double reach;
 };
 std::optional<Bent> bent_of(const Problem& problem, const Eigen::VectorXd& best) {
-  const models::ScanFacts& scan = problem.facts().scan;
-  if (problem.facts().search != models::Search::descent || scan.over != models::Scan::values ||
-      scan.has_a_kink)
-    return std::nullopt;
-  std::optional<Bent> bent;
-  const Bounds bounds = problem.bounds();
+  const auto parameter = scanned_parameter(problem);
+  if (!parameter || problem.facts().scan.has_a_kink) return std::nullopt;
   const auto all = problem.all();
-  for (std::size_t place = 0; place < all.size(); ++place) {
-    const models::ParameterInfo& info = problem.parameters[all[place].parameter];
-    if (info.name != scan.parameter) continue;
-    if (bent) return std::nullopt;
-    const auto k = static_cast<Index>(place);
-    const double wanted = info.scale == models::Scale::logarithmic ? reach : share * std::abs(best[k]);
-    bent = {.coordinate = k,
-            .reach = std::min({wanted, best[k] - bounds.lower[k], bounds.upper[k] - best[k]})};
-    if (!(bent->reach > 0.01 * wanted)) return std::nullopt;
-  }
-  return bent;
+  const auto found = std::ranges::find(all, *parameter, &Problem::Coordinate::parameter);
+  const Index k = found - all.begin();
+  const Bounds bounds = problem.bounds();
+  const bool logarithmic = problem.parameters[*parameter].scale == models::Scale::logarithmic;
+  const double wanted = logarithmic ? reach : share * std::abs(best[k]);
+  const double room = std::min({wanted, best[k] - bounds.lower[k], bounds.upper[k] - best[k]});
+  if (!(room > 0.01 * wanted)) return std::nullopt;
+  return Bent{.coordinate = k, .reach = room};
 }
 
 }  // namespace
@@ -64,19 +58,18 @@ SeparableSums::SeparableSums(const LawObjective& law, const Problem& problem, co
 }
 
 std::unique_ptr<const SeparableSums> SeparableSums::around(const LawObjective& law, const Problem& problem,
-                                                           const Weights& weights,
                                                            const Eigen::VectorXd& best,
                                                            const Eigen::VectorXd& residuals) {
   const auto bent = bent_of(problem, best);
   if (!bent || residuals.size() > most_numbers / (terms() + best.size())) return nullptr;
   std::unique_ptr<SeparableSums> sums(new SeparableSums(law, problem, best, bent->coordinate, bent->reach));
-  return sums->sum(weights, residuals) ? std::move(sums) : nullptr;
+  return sums->sum(residuals) ? std::move(sums) : nullptr;
 }
 
-bool SeparableSums::sum(const Weights& weights, const Eigen::VectorXd& residuals) {
+bool SeparableSums::sum(const Eigen::VectorXd& residuals) {
   Eigen::ArrayXd root(residuals.size());
   Index counted = 0;
-  for (const double weight : weights) {
+  for (const double weight : law_.weights()) {
     if (weight != 0.0) root[counted++] = std::sqrt(weight);
   }
   const Index p = size();

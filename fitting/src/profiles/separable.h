@@ -23,7 +23,6 @@ class SeparableSums final : public Objective {
   /// much memory. Every sample counts by its square.
   [[nodiscard]] static std::unique_ptr<const SeparableSums> around(const LawObjective& law,
                                                                    const Problem& problem,
-                                                                   const Weights& weights,
                                                                    const Eigen::VectorXd& best,
                                                                    const Eigen::VectorXd& residuals);
 
@@ -41,7 +40,7 @@ class SeparableSums final : public Objective {
   SeparableSums(const LawObjective& law, const Problem& problem, const Eigen::VectorXd& best,
                 Eigen::Index bent, double reach);
   /// False where there is no law at one of the nodes.
-  [[nodiscard]] bool sum(const Weights& weights, const Eigen::VectorXd& residuals);
+  [[nodiscard]] bool sum(const Eigen::VectorXd& residuals);
 
   const LawObjective& law_;
   Eigen::VectorXd best_;

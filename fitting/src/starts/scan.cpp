@@ -109,6 +109,14 @@ std::vector<LinearFamily> families_of(const Problem& problem, const Samples& sam
 
 }  // namespace
 
+std::optional<std::size_t> scanned_parameter(const Problem& problem) {
+  const models::LawFacts& facts = problem.facts();
+  if (facts.search != models::Search::descent || facts.scan.over != models::Scan::values) return std::nullopt;
+  const std::size_t place = place_of(problem, facts.scan.parameter);
+  if (!problem.free[place] || problem.own[place]) return std::nullopt;
+  return place;
+}
+
 std::vector<double> scanned_values(const Problem& problem, const Samples& samples) {
   const models::ScanFacts& scan = problem.facts().scan;
   std::vector<double> values(scan.values.begin(), scan.values.end());

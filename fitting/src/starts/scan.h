@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "problem.h"
@@ -33,7 +34,10 @@ struct Start {
 [[nodiscard]] bool sums_of(const Problem& problem, const Samples& samples, const Weights& weights,
                            const std::vector<double>& values, Sums& sums);
 
-/// Values of the parameter that a law is scanned over (models::Scan::values).
+/// The parameter that a law is scanned over because it is linear in all others (models::Scan::values); none
+/// of other laws, nor where it is held or recordings have it of their own.
+[[nodiscard]] std::optional<std::size_t> scanned_parameter(const Problem& problem);
+/// The values that it takes.
 [[nodiscard]] std::vector<double> scanned_values(const Problem& problem, const Samples& samples);
 
 /// The family of all parameters that are named linear, the others held at these values.

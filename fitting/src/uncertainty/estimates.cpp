@@ -234,7 +234,7 @@ class Estimation {
     }
     const auto cheaper = [&]() -> std::unique_ptr<const Objective> {
       if (loss_.kind != Loss::squares) return nullptr;
-      return SeparableSums::around(objective, inner, weights_, at, linear.residuals);
+      return SeparableSums::around(objective, inner, at, linear.residuals);
     };
     return limits_of(inner, objective, at, sums, hessian, uncertainty, linear.scale, options_.threads,
                      cheaper);

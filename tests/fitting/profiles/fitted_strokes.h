@@ -52,7 +52,7 @@ struct FittedStrokes {
     return linearise(objective(), problem, solution, samples, weights, {});
   }
   [[nodiscard]] std::unique_ptr<const SeparableSums> sums(const LawObjective& objective) const {
-    return SeparableSums::around(objective, problem, weights, best(), linear().residuals);
+    return SeparableSums::around(objective, problem, best(), linear().residuals);
   }
 
  private:
