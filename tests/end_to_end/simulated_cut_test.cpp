@@ -79,9 +79,17 @@ TEST(Demo, GoesOnFromALabsTextFile) {
               testing::HasSubstr("force_measured: column 2 'force [gf]', in gf as the file says"));
   EXPECT_THAT(outcome.output, testing::HasSubstr("what is wrong with it: 1 lines are not data: 1802"));
   EXPECT_THAT(outcome.output, testing::HasSubstr("4666 samples in SI, 7 closings"));
-  for (const char* file :
-       {"report.html", "punch.h5", "punch.html", "punch-fits/fit.json", "punch-fits/kelvin.law.toml"})
+  for (const char* file : {"report.html", "inspect.json", "punch.h5", "punch.html", "punch-inspect.json",
+                           "punch-fits/fit.json", "punch-fits/kelvin.law.toml"})
     EXPECT_TRUE(std::filesystem::exists(folder / "demo" / file)) << file;
+  for (const char* page : {"report.html", "punch.html"}) {
+    const std::string html = test::read_text(folder / "demo" / page);
+    EXPECT_THAT(html, testing::Not(testing::HasSubstr("of which recording"))) << page;
+    EXPECT_THAT(html, testing::Not(testing::HasSubstr("writing")))
+        << "the name that the folder had on the way";
+  }
+  EXPECT_THAT(test::read_text(folder / "demo" / "report.html"),
+              testing::HasSubstr("From <code>choice/choose.json</code>"));
 }
 
 }  // namespace

@@ -51,9 +51,9 @@ void scale(Chart& chart) {
 
 std::string comparison_table(const json& fits, const std::string& unit) {
   std::vector<std::vector<std::string>> rows{
-      {"law", "free parameters", "rmse [" + unit + "]", "rmse rendered [" + unit + "]",
-       "largest [" + unit + "]", "R²", "AIC", "BIC", "rmse held out [" + unit + "]",
-       "held out as rendered [" + unit + "]", "outside JND", "converged"}};
+      {"law", "free", "rmse [" + unit + "]", "rmse rendered [" + unit + "]", "largest [" + unit + "]", "R²",
+       "AIC", "BIC", "rmse held out [" + unit + "]", "held out as rendered [" + unit + "]", "outside JND",
+       "converged"}};
   const bool tested = has_any(fits, "test_rmse");
   if (tested) rows[0].insert(rows[0].begin() + 10, "rmse in the test [" + unit + "]");
   for (const json& fit : fits.at("fits")) {

@@ -206,7 +206,8 @@ std::string fit_section(const schema::Recording& recording, std::size_t axis, co
     const Window window = window_of(recording, view.series);
     std::string html = "<h2>Fits</h2>\n" + warnings_of(fits, view) + comparison_table(fits, view.force_unit);
     html +=
-        "<p class=\"soft\">Held out: each cycle (or blocks of time) predicted by a fit to the others. As "
+        "<p class=\"soft\">Free: the parameters that were fitted. Held out: each cycle (or blocks of time) "
+        "predicted by a fit to the others. As "
         "rendered: by a loop, with its late velocity, its latency, and the rendering aids of laws that have "
         "branches; the choice goes by that. Outside JND: share of samples whose error a person could feel. "
         "Errors are over the rows in contact unless all were asked for. Floor: no map of penetration "

@@ -107,14 +107,14 @@ std::string verdict_paragraph(const json& check) {
     const bool passed = check.at("verdict") == "pass";
     const bool passive = check.at("passive").get<bool>();
     std::string text =
-        fmt::format("<strong>Closed loop: {}.</strong> {} ticks at {:.0f} Hz, {} missed.",
+        fmt::format("<strong>Closed loop: {}.</strong> {} ticks at {:.0f} Hz, {} missed",
                     !passed   ? "FAIL"
                     : passive ? "pass"
                               : "in time, but not passive",
                     check.at("ticks").get<std::uint64_t>(), 1.0 / check.at("period_s").get<double>(),
                     check.at("missed").get<std::uint64_t>());
-    for (const json& reason : check.at("reasons"))
-      text += fmt::format(" {}.", escaped(reason.get<std::string>()));
+    for (const json& reason : check.at("reasons")) text += "; " + escaped(reason.get<std::string>());
+    text += '.';
     return html_answer(!passed ? Answer::bad : passive ? Answer::good : Answer::partly, text);
   } catch (const json::exception& error) {
     refuse(error);

@@ -88,6 +88,14 @@ std::string read_with_care(const FoundResult& result, const Read& read) {
   }
 }
 
+/// A file in the recording's folder, or below it, by its way from there: the folder may have another name
+/// later.
+void name_beside(const std::filesystem::path& recording, FoundResult& result) {
+  const auto folder = std::filesystem::absolute(recording).parent_path();
+  const auto way = std::filesystem::absolute(result.file).lexically_relative(folder);
+  if (!way.empty() && *way.begin() != "..") result.name = way.string();
+}
+
 /// Those that were named as fits and check, and those that were found.
 std::vector<FoundResult> results_of(const ReportInput& input, const std::string& uuid) {
   std::vector<std::filesystem::path> paths;
@@ -105,6 +113,7 @@ std::vector<FoundResult> results_of(const ReportInput& input, const std::string&
                                  [&](const FoundResult& other) { return same(results[i], other); }),
                   results.end());
   }
+  for (FoundResult& result : results) name_beside(input.recording, result);
   return results;
 }
 

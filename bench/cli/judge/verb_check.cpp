@@ -7,6 +7,7 @@
 
 #include "files/json_file.h"
 #include "files/whole_file.h"
+#include "laws/law_of_recording.h"
 #include "laws/plugin_laws.h"
 #include "program/confirm_on_enter.h"
 #include "program/contact_arguments.h"
@@ -61,9 +62,7 @@ void run_check(const CheckVerbArguments& arguments, Context& context) {
   context.result["law"] = std::string(options.law->law.model());
   if (const std::string plugin = plugin_in_words(options.law->law); !plugin.empty())
     context.result["plugin"] = plugin;
-  const std::string& fitted_to = options.law->fit.recording_uuid;
-  context.result["law_of_recording"] =
-      fitted_to.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(fitted_to);
+  context.result["law_of_recording"] = law_of_recording(*options.law);
   if (!arguments.output.empty())
     write_json_file(arguments.output, context.result, schema::existing_if(options.replace));
   if (!verdict.passed) context.exit = Exit::check_failed;

@@ -10,7 +10,7 @@
 
 #include "cases/case_findings.h"
 #include "files/whole_folder.h"
-#include "laws/law_file.h"
+#include "laws/law_of_recording.h"
 #include "program/progress.h"
 #include "program/verbs.h"
 #include "program/wall_search_arguments.h"
@@ -77,9 +77,7 @@ Findings study(const StabilityVerbArguments& given, Context& context) {
   if (given.law.empty()) return study_walls(options);
   const LawFile law = read_law_file(given.law);
   LawFindings of_law = study_law(law, given.law, options);
-  const std::string& fitted_to = law.fit.recording_uuid;
-  of_law.findings.json["law_of_recording"] =
-      fitted_to.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(fitted_to);
+  of_law.findings.json["law_of_recording"] = law_of_recording(law);
   if (!of_law.holds) context.exit = Exit::check_failed;
   return std::move(of_law.findings);
 }

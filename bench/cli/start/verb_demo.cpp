@@ -18,6 +18,8 @@
 #include "fits/fit_files.h"
 #include "fits/fit_recording.h"
 #include "import/text/imported_text.h"
+#include "inspect/inspection.h"
+#include "inspect/inspection_text.h"
 #include "program/verbs.h"
 #include "report/charts.h"
 #include "report/page.h"
@@ -84,6 +86,17 @@ LawChoice choose_for(const schema::Recording& recording, const LoopChecks& check
   return choose_law(recording, options, stop);
 }
 
+/// What a recording is worth, kept for its report.
+fs::path inspected(const schema::Recording& recording, const fs::path& file, Context& context) {
+  const Inspection inspection =
+      inspect(schema::RowsInMemory(recording), {.axis = recording.cycles ? recording.cycles->axis : 0});
+  write_json_file(file, inspection_as_json(inspection));
+  const auto& cycles = inspection.cycles.cycles;
+  const auto flagged = std::ranges::count_if(cycles, [](const FlaggedCycle& one) { return !one.is_good(); });
+  context.say(fmt::format("   {} of its {} cycles flagged, which fits leave out", flagged, cycles.size()));
+  return file;
+}
+
 /// Where the demo writes, and the folder that this becomes.
 struct DemoFolder {
   const fs::path& at;
@@ -99,6 +112,7 @@ void simulated_cut(const DemoVerbArguments& arguments, const DemoFolder& folder,
       record_scene(default_scene(), {.seconds = recorded_s, .seed = context.seed}, cut, signals.requested());
   context.say(fmt::format("   {}: {} samples, {} closings", (folder.name / "cut.h5").string(),
                           recording.rows(), recording.cycles ? recording.cycles->closing.size() : 0));
+  const fs::path worth = inspected(recording, folder.at / "inspect.json", context);
 
   context.say("2. Five force laws are fitted to it, with their intervals");
   RecordingFit fit = fit_recording(recording, {});
@@ -114,18 +128,22 @@ void simulated_cut(const DemoVerbArguments& arguments, const DemoFolder& folder,
   write_fits(fit, cut, folder.at / "fits");
   nlohmann::ordered_json choice_json = choice_as_json(choice);
   choice_json["name"] = "the demo's cut";
+  choice_json["uuid"] = recording.header.uuid;
   choice_json["recording"] = (folder.name / "cut.h5").string();
   choice_json["axis"] = recording.axes.front().name;
   write_choice(choice, choice_json, cut, folder.at / "choice");
   const fs::path check = folder.at / "check.json";
+  loop.json["law_of_recording"] = recording.header.uuid;
   write_json_file(check, loop.json);
   context.say("   " + choice.why);
   context.say(fmt::format("   {}: {} of {} deadlines missed", loop.verdict.passed ? "pass" : "FAIL",
                           loop.missed, loop.ticks));
   for (const std::string& reason : loop.verdict.reasons) context.say("   " + reason);
 
-  write_whole_file(folder.at / "report.html",
-                   report_page({.recording = cut, .fits = folder.at / "fits", .check = check}));
+  write_whole_file(folder.at / "report.html", report_page({.recording = cut,
+                                                           .fits = folder.at / "fits",
+                                                           .check = check,
+                                                           .results = {worth, folder.at / "choice"}}));
   const fs::path report = folder.name / "report.html";
   context.say(fmt::format("4. The report is {}", fs::absolute(report).string()));
   context.result = {{"folder", folder.name.string()},
@@ -154,6 +172,7 @@ void text_file(const DemoVerbArguments& arguments, const DemoFolder& folder, Con
   schema::write_recording(recording_at, recording);
   context.say(fmt::format("   {}: {} samples in SI, {} closings", file.string(), recording.rows(),
                           recording.cycles->closing.size()));
+  const fs::path worth = inspected(recording, folder.at / (name + "-inspect.json"), context);
 
   context.say("6. The same five laws are fitted to it");
   RecordingFit fit = fit_recording(recording, {});
@@ -162,7 +181,8 @@ void text_file(const DemoVerbArguments& arguments, const DemoFolder& folder, Con
     context.say(fmt::format("   {:12} {:.3f} N off in cycles that it had not seen", law.result.model,
                             law.result.cv_rmse));
   context.say(fmt::format("   {}: {}", fit.choice.model, fit.choice.why));
-  write_whole_file(folder.at / (name + ".html"), report_page({.recording = recording_at, .fits = fits_at}));
+  write_whole_file(folder.at / (name + ".html"),
+                   report_page({.recording = recording_at, .fits = fits_at, .results = {worth}}));
   context.say(fmt::format("   law files, fit.json and fit.csv are in {}, and its report is {}", fits.string(),
                           fs::absolute(report).string()));
   context.result["text"] = {

@@ -38,10 +38,10 @@ summary { cursor: pointer; color: var(--soft); }
 td.share { text-align: right; padding-left: .5rem; padding-right: .5rem; }
 .scroll { overflow-x: auto; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: .93rem; margin: .6rem 0; }
-th, td { text-align: left; padding: .28rem .8rem .28rem 0; border-bottom: 1px solid var(--line); vertical-align: top; }
+th, td { text-align: left; padding: .28rem .7rem .28rem 0; border-bottom: 1px solid var(--line); vertical-align: top; }
 th { color: var(--soft); font-weight: 600; }
 code { font-family: ui-monospace, "DejaVu Sans Mono", monospace; font-size: .9em; overflow-wrap: anywhere; }
-@media print { body { max-width: none; background: #fff; color: #000; } figure { break-inside: avoid; } }
+@media print { body { max-width: none; background: #fff; color: #000; } figure { break-inside: avoid; } .scroll { overflow: visible; } table { font-size: .8rem; } }
 )";
 
 }  // namespace

@@ -68,7 +68,11 @@ std::optional<FoundResult> result_of(const fs::path& file, json content, const s
   const auto kind = kind_of(content);
   if (!kind) return std::nullopt;
   const Belongs belongs = belongs_to(content, *kind, uuid);
-  return FoundResult{.kind = *kind, .file = file, .json = std::move(content), .belongs = belongs};
+  return FoundResult{.kind = *kind,
+                     .file = file,
+                     .name = (file.parent_path().filename() / file.filename()).string(),
+                     .json = std::move(content),
+                     .belongs = belongs};
 }
 
 std::vector<fs::path> json_files_in(const fs::path& folder) {

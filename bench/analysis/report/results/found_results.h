@@ -23,6 +23,7 @@ enum class Belongs : std::uint8_t { here, elsewhere, unknown };
 struct FoundResult {
   ResultKind kind = ResultKind::fits;
   std::filesystem::path file;
+  std::string name;  ///< of the file, as a page has it
   nlohmann::ordered_json json;
   Belongs belongs = Belongs::unknown;  ///< to the recording, or a law that was fitted to it
 };

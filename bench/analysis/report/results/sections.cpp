@@ -84,9 +84,7 @@ std::optional<Chart> map_of(const FoundResult& result) {
 }  // namespace
 
 std::string whose(const FoundResult& result) {
-  const std::filesystem::path folder = result.file.parent_path().filename();
-  std::string html = fmt::format("<p class=\"soft\">From <code>{}</code>",
-                                 escaped((folder / result.file.filename()).string()));
+  std::string html = fmt::format("<p class=\"soft\">From <code>{}</code>", escaped(result.name));
   if (result.belongs == Belongs::elsewhere) html += ", which is of another recording";
   if (result.belongs == Belongs::unknown && result.kind != ResultKind::device)
     html += ", which does not say which recording it is of";

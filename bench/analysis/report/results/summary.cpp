@@ -27,9 +27,9 @@ SummaryLine of_inspection(const json& inspection) {
     }
   }
   const std::size_t warnings = inspection.at("warnings").size();
-  return {
-      .answer = flagged + warnings == 0 ? Answer::good : Answer::partly,
-      .text = fmt::format("the recording: {} of {} cycles flagged, {} warnings", flagged, cycles, warnings)};
+  return {.answer = flagged + warnings == 0 ? Answer::good : Answer::partly,
+          .text = fmt::format("the recording: {} of {} cycles flagged, {} warning{}", flagged, cycles,
+                              warnings, warnings == 1 ? "" : "s")};
 }
 
 SummaryLine of_fits(const json& fits) {

@@ -51,7 +51,7 @@ function references({ line_rmse, line_cv_rmse, floor, jnd }: FitFile): HTMLTable
     );
   };
   return [
-    row("straight line", 2, [line_rmse, line_cv_rmse ?? null, null], "of force over penetration"),
+    row("straight line", 2, [line_rmse, line_cv_rmse ?? null, null], "of force over position"),
     floor?.velocity == null ? null : row("floor", null, [null, floor.velocity, null], "best map of position and speed"),
   ].filter((it) => it !== null);
 }
@@ -110,7 +110,7 @@ export class FitTable {
         element(
           "tr",
           {},
-          head("draw", false, ""),
+          element("th", { scope: "col", "data-head": "" }, element("span", { class: "unseen" }, "draw")),
           head("law", false),
           head("free", true, "free parameters"),
           head(`error [${unit}]`),
