@@ -15,8 +15,6 @@ namespace {
 constexpr double most_lines = 4000;
 constexpr std::size_t most_columns = 16;
 
-HttpResponse json_text_of(std::string text) { return {.type = "application/json", .body = std::move(text)}; }
-
 }  // namespace
 
 void add_sweep_routes(Routes& routes, Workspace& workspace, SweepVerbs verbs) {
@@ -25,11 +23,11 @@ void add_sweep_routes(Routes& routes, Workspace& workspace, SweepVerbs verbs) {
     return sweeps->opened(workspace.find(id, FileKind::sweep).path);
   };
   routes.get("/api/sweep", Routes::Pace::slow, [opened](const HttpRequest& request) {
-    return json_text_of(sweep_json(*opened(text_in_query(request, "id"))));
+    return json_text_response(sweep_json(*opened(text_in_query(request, "id"))));
   });
   routes.post("/api/sweep/answer", Routes::Pace::slow, [opened](const HttpRequest& request) {
     const nlohmann::json body = json_in(request);
-    return json_text_of(answer_json(answer(*opened(text_in(body, "id")), question_from_json(body))));
+    return json_text_response(answer_json(answer(*opened(text_in(body, "id")), question_from_json(body))));
   });
   routes.post("/api/sweep/sample", Routes::Pace::slow, [opened](const HttpRequest& request) {
     nlohmann::json body = json_in(request);
@@ -42,7 +40,7 @@ void add_sweep_routes(Routes& routes, Workspace& workspace, SweepVerbs verbs) {
       columns.push_back(one.get<std::string>());
     }
     const auto atlas = opened(text_in(body, "id"));
-    return json_text_of(sample_json(sample(*atlas, question_from_json(body), columns, most)));
+    return json_text_response(sample_json(sample(*atlas, question_from_json(body), columns, most)));
   });
 }
 

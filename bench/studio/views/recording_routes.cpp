@@ -16,8 +16,6 @@ constexpr std::size_t max_traces = 32;
 constexpr std::size_t max_loops = 200;
 constexpr double farthest_s = 1e12;  // thirty thousand years
 
-HttpResponse json_text(std::string text) { return {.type = "application/json", .body = std::move(text)}; }
-
 HttpResponse stretch(const HttpRequest& request, RecordingView& recording) {
   const std::size_t count = recording.traces().size();
   if (count == 0) throw RequestError(400, "the recording has no traces");
@@ -36,7 +34,7 @@ HttpResponse loops(const HttpRequest& request, RecordingView& recording) {
   const std::size_t axis =
       count_in_query(request, "axis", recording.file().about().axes.size() - 1);  // it has at least one
   const std::size_t first = count_in_query(request, "first", 1'000'000'000);
-  return json_text(loops_json(recording, axis, first, count_in_query(request, "count", max_loops)));
+  return json_text_response(loops_json(recording, axis, first, count_in_query(request, "count", max_loops)));
 }
 
 }  // namespace
@@ -47,17 +45,17 @@ void add_recording_routes(Routes& routes, RecordingViews& views,
     return path_of(text_in_query(request, "id"));
   };
   routes.get("/api/recording", Routes::Pace::slow, [&views, file_of](const HttpRequest& request) {
-    return json_text(recording_json(*views.current(file_of(request)), text_in_query(request, "id")));
+    return json_text_response(recording_json(*views.current(file_of(request)), text_in_query(request, "id")));
   });
   routes.get("/api/recording/view", Routes::Pace::slow, [&views, file_of](const HttpRequest& request) {
     return stretch(request, *views.opened(file_of(request)));
   });
   routes.get("/api/recording/thumbnail", Routes::Pace::slow,
              [thumbnails = std::make_shared<Thumbnails>(), file_of](const HttpRequest& request) {
-               return json_text(thumbnails->of(file_of(request)));
+               return json_text_response(thumbnails->of(file_of(request)));
              });
   routes.get("/api/recording/inspection", Routes::Pace::slow, [&views, file_of](const HttpRequest& request) {
-    return json_text(views.opened(file_of(request))->inspection());
+    return json_text_response(views.opened(file_of(request))->inspection());
   });
   routes.get("/api/recording/loops", Routes::Pace::slow, [&views, file_of](const HttpRequest& request) {
     return loops(request, *views.opened(file_of(request)));

@@ -4,7 +4,9 @@
 #include <array>
 #include <chrono>
 #include <iterator>
+#include <memory>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -102,14 +104,47 @@ std::string state_of(const std::vector<WorkspaceEntry>& entries, const nlohmann:
   return sha256_of(std::string_view(all)).substr(0, 16);
 }
 
-nlohmann::ordered_json entries_of(const std::vector<WorkspaceEntry>& entries, FileKind kind,
-                                  nlohmann::ordered_json (&make)(const WorkspaceEntry&)) {
-  nlohmann::ordered_json found = nlohmann::ordered_json::array();
-  for (const WorkspaceEntry& it : entries) {
-    if (it.kind == kind) found.push_back(make(it));
+/// What files of a kind say of themselves; of one that has not changed since, without reading it again.
+class EntriesRead {
+ public:
+  using Make = nlohmann::ordered_json (*)(const WorkspaceEntry&);
+
+  EntriesRead(FileKind kind, Make make) : kind_(kind), make_(make) {}
+
+  [[nodiscard]] nlohmann::ordered_json of(const std::vector<WorkspaceEntry>& entries) {
+    nlohmann::ordered_json found = nlohmann::ordered_json::array();
+    std::unordered_map<std::string, Read> still_there;
+    for (const WorkspaceEntry& it : entries) {
+      if (it.kind != kind_) continue;
+      const auto before = read_.find(it.id);
+      const bool is_known =
+          before != read_.end() && before->second.bytes == it.bytes && before->second.modified == it.modified;
+      found.push_back(is_known ? std::move(before->second.json) : make_(it));
+      // What could not be read may be readable the next time, as it is.
+      if (found.back()["error"] == "")
+        still_there[it.id] = {.bytes = it.bytes, .modified = it.modified, .json = found.back()};
+    }
+    read_ = std::move(still_there);
+    return found;
   }
-  return found;
-}
+
+ private:
+  struct Read {
+    std::uintmax_t bytes = 0;
+    std::filesystem::file_time_type modified;
+    nlohmann::ordered_json json;
+  };
+
+  FileKind kind_;
+  Make make_;
+  std::unordered_map<std::string, Read> read_;  ///< by id
+};
+
+/// Of slow answers, which one thread gives.
+struct FolderRead {
+  EntriesRead laws{FileKind::law, law_entry};
+  EntriesRead sessions{FileKind::session, session_entry};
+};
 
 /// Recordings, laws and sessions have lists of their own.
 nlohmann::ordered_json other_files(const std::vector<WorkspaceEntry>& entries) {
@@ -124,10 +159,11 @@ nlohmann::ordered_json other_files(const std::vector<WorkspaceEntry>& entries) {
 }
 
 /// @param unless what the asker knows the state of.
-std::string workspace_json(Workspace& workspace, const std::string& device, const std::string& unless) {
+std::string workspace_json(Workspace& workspace, FolderRead& read, const std::string& device,
+                           const std::string& unless) {
   const std::vector<WorkspaceEntry> entries = workspace.scan();
-  nlohmann::ordered_json laws = entries_of(entries, FileKind::law, law_entry);
-  nlohmann::ordered_json sessions = entries_of(entries, FileKind::session, session_entry);
+  nlohmann::ordered_json laws = read.laws.of(entries);
+  nlohmann::ordered_json sessions = read.sessions.of(entries);
   const std::string state = state_of(entries, {laws, sessions});
   if (state == unless) return R"({"unchanged":true})";
   nlohmann::ordered_json json{
@@ -144,11 +180,11 @@ std::string workspace_json(Workspace& workspace, const std::string& device, cons
 }  // namespace
 
 void add_workspace_routes(Routes& routes, Workspace& workspace, const std::string& device) {
-  routes.get("/api/workspace", Routes::Pace::slow, [&workspace, device](const HttpRequest& request) {
+  const auto read = std::make_shared<FolderRead>();
+  routes.get("/api/workspace", Routes::Pace::slow, [&workspace, read, device](const HttpRequest& request) {
     const auto unless = request.query.find("unless");
     const std::string known = unless == request.query.end() ? "" : unless->second;
-    return HttpResponse{.type = "application/json",
-                        .body = json_for_page(workspace_json(workspace, device, known))};
+    return json_text_response(json_for_page(workspace_json(workspace, *read, device, known)));
   });
 }
 

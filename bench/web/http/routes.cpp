@@ -33,8 +33,12 @@ HttpResponse guarded(const Routes::Answer& answer, const HttpRequest& request) {
 }  // namespace
 
 HttpResponse json_response(const nlohmann::ordered_json& json) {
-  return {.type = "application/json",
-          .body = json_for_page(json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace))};
+  return json_text_response(
+      json_for_page(json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)));
+}
+
+HttpResponse json_text_response(std::string text) {
+  return {.type = "application/json", .body = std::move(text)};
 }
 
 HttpResponse json_error(int status, std::string_view why) {

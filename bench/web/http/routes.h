@@ -50,6 +50,8 @@ struct RequestError : std::runtime_error {
                                              std::size_t at_most);
 
 [[nodiscard]] HttpResponse json_response(const nlohmann::ordered_json& json);
+/// Of JSON that is text already, fit for a page: json_for_page().
+[[nodiscard]] HttpResponse json_text_response(std::string text);
 [[nodiscard]] HttpResponse json_error(int status, std::string_view why);
 [[nodiscard]] HttpResponse bytes_response(std::string bytes);
 

@@ -1,14 +1,17 @@
 #include "workspace/workspace_routes.h"
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include <kerf/schema/recording.h>
 
 #include "bench/studio/server/asker.h"
+#include "laws/law_file.h"
 #include "support/program.h"
 #include "support/recordings.h"
 #include "workspace/workspace.h"
@@ -73,6 +76,21 @@ TEST_F(WorkspaceRoutes, ListEveryFileByWhatItIs) {
   EXPECT_EQ(all["files"][0].at("kind"), "fit");
   EXPECT_EQ(all.at("sessions").size(), 0U);
   EXPECT_EQ(all.at("unlooked"), 0);
+}
+
+TEST_F(WorkspaceRoutes, TellALawAsItIsNow) {
+  const fs::path file = folder_ / "a.law.toml";
+  const auto axis_of_law = [&] { return folder().at("laws")[0].at("axis").get<std::string>(); };
+  LawFile law{
+      .law = models::Law::make("kelvin", std::vector{4.0, 3.0, 0.9}), .contact = {}, .axis = "x", .fit = {}};
+  write_law_file(file, law);
+  EXPECT_EQ(axis_of_law(), "x");
+  EXPECT_EQ(axis_of_law(), "x") << "and is not read again";
+  const auto before = fs::last_write_time(file);
+  law.axis = "y";
+  write_law_file(file, law);  // of as many bytes
+  fs::last_write_time(file, before + std::chrono::seconds(1));
+  EXPECT_EQ(axis_of_law(), "y");
 }
 
 TEST_F(WorkspaceRoutes, ListFilesWhoseNamesAreNoText) {
