@@ -182,7 +182,14 @@ export const tests = {
       });
       expectEqual(await audit(experimenter), [], `what of the trials' table is not accessible in the ${colorScheme}`);
     }
-    await experimenter.getByRole("link", { name: "Analyse" }).click();
+    await experimenter.getByRole("link", { name: "S01.h5", exact: true }).click();
+    const chosen = experimenter.getByRole("region", { name: "The session that was chosen" });
+    await chosen.getByText("4 trials").waitFor();
+    await experimenter.getByRole("button", { name: "Read its trials" }).click();
+    await experimenter.locator(".form .folder_quality tbody").getByText("finished").waitFor();
+    await experimenter.screenshot({ path: join(screenshots, "experimenter-chosen.png"), fullPage: true });
+    expectEqual(await audit(experimenter), [], "what of a finished session is not accessible");
+    await experimenter.getByRole("link", { name: "Analyse", exact: true }).click();
     await experimenter.locator(".verb_page").waitFor();
     expect(
       (await given(experimenter)).includes("S01.h5"),

@@ -80,8 +80,12 @@ function tableOf(told: readonly Told[]): HTMLElement {
   );
 }
 
-/** The same of every session of the folder, on demand: each is opened with the key. */
-export function folderQuality(context: Context, sessions: () => readonly WorkspaceSession[]): HTMLElement {
+/** The same of sessions of the folder, on demand: each is opened with the key. */
+export function folderQuality(
+  context: Context,
+  sessions: () => readonly WorkspaceSession[],
+  words: { head: string; read: string },
+): HTMLElement {
   const passphrase = element("input", { type: "password", autocomplete: "off" });
   const found = element("div", { "aria-live": "polite" });
   const ask = async (): Promise<void> => {
@@ -107,8 +111,8 @@ export function folderQuality(context: Context, sessions: () => readonly Workspa
   };
   return element(
     "section",
-    { class: "folder_quality", "aria-label": "How trials went" },
-    element("h2", {}, "How the trials of all sessions went"),
+    { class: "folder_quality", "aria-label": words.head },
+    element("h2", {}, words.head),
     element(
       "form",
       {
@@ -119,7 +123,7 @@ export function folderQuality(context: Context, sessions: () => readonly Workspa
         },
       },
       labelled("Passphrase, for sessions that were sealed with one", passphrase),
-      element("button", { type: "submit" }, "Read all sessions"),
+      element("button", { type: "submit" }, words.read),
     ),
     found,
   );

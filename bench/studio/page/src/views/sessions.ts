@@ -74,6 +74,22 @@ function whereItStands(session: WorkspaceSession): string {
   return session.answered > 0 ? `${session.answered} trials done` : "not begun";
 }
 
+/** Of a session that cannot be begun or gone on with: how it stands, and what is done with it. */
+function standing(session: WorkspaceSession, hasKeyFile: boolean): HTMLElement {
+  return element(
+    "section",
+    { class: "card", "aria-label": "The session that was chosen" },
+    element("h2", {}, session.subject ? `Subject ${session.subject}, ${session.name}` : session.name),
+    element("p", { class: session.error ? "wrong" : "" }, whereItStands(session)),
+    session.finished ? element("p", { class: "count" }, `${session.answered} trials`) : null,
+    session.finished && hasKeyFile ? element("a", { href: analysisOf([session]) }, "Analyse it") : null,
+  );
+}
+
+function analysisOf(sessions: readonly WorkspaceSession[]): string {
+  return `#/work/session-analyze?sessions=${encodeURIComponent(sessions.map((it) => it.name).join("\n"))}`;
+}
+
 /** What is needed to begin: the device, and the passphrase of whoever keeps the blinding. */
 function startForm(
   session: WorkspaceSession,
@@ -165,13 +181,7 @@ function waysOf(workspace: Workspace, hasKeyFile: boolean): HTMLElement {
           "li",
           {},
           element("span", { class: "name" }, `${finished.length} finished`),
-          element(
-            "a",
-            {
-              href: `#/work/session-analyze?sessions=${encodeURIComponent(finished.map((it) => it.name).join("\n"))}`,
-            },
-            "Analyse",
-          ),
+          element("a", { href: analysisOf(finished) }, "Analyse"),
         )
       : null,
     hasKeyFile
@@ -197,24 +207,30 @@ function mount(root: HTMLElement, context: Context): () => void {
   root.append(
     element("h1", { tabindex: -1 }, "Sessions"),
     element("div", { class: "columns" }, element("div", {}, intro, ways, list, form), card.root),
-    folderQuality(context, () => known),
+    folderQuality(context, () => known, { head: "How the trials of all sessions went", read: "Read all sessions" }),
   );
   let device = "";
   let hasKeyFile = false;
   let known: readonly WorkspaceSession[] = [];
   let running = ""; // the name of the session that runs
 
+  const mayRun = (session: WorkspaceSession): boolean => running === "" && !session.finished && session.error === "";
+
+  const begin = (order: Record<string, unknown>): void => {
+    context.say("The session is being opened");
+    context.api.post<SessionState>("/api/session/start", order).then((state) => {
+      card.show(state);
+      form.replaceChildren();
+      context.say("");
+      look().catch(context.complain);
+    }, context.complain);
+  };
+
   const choose = (session: WorkspaceSession): void => {
+    const its = { head: `How the trials of ${session.name} went`, read: "Read its trials" };
     form.replaceChildren(
-      startForm(session, device, hasKeyFile, (order) => {
-        context.say("The session is being opened");
-        context.api.post<SessionState>("/api/session/start", order).then((state) => {
-          card.show(state);
-          form.replaceChildren();
-          context.say("");
-          look().catch(context.complain);
-        }, context.complain);
-      }),
+      mayRun(session) ? startForm(session, device, hasKeyFile, begin) : standing(session, hasKeyFile),
+      ...(session.answered > 0 ? [folderQuality(context, () => [session], its)] : []),
     );
     form.querySelector("input")?.focus();
   };
@@ -229,11 +245,11 @@ function mount(root: HTMLElement, context: Context): () => void {
         element(
           "li",
           {},
-          element("span", { class: "name" }, it.name),
+          element("a", { class: "name", href: `#/sessions/${it.id}` }, it.name),
           element("span", {}, it.subject ? `subject ${it.subject}` : ""),
           element("span", { class: "quiet" }, running === it.name ? "running" : whereItStands(it)),
           button(it.answered > 0 ? "Go on" : "Begin", () => choose(it), {
-            disabled: running !== "" || it.finished || it.error !== "",
+            disabled: !mayRun(it),
             "aria-label": `${it.answered > 0 ? "Go on with" : "Begin"} ${it.name}`,
           }),
         ),
@@ -260,7 +276,7 @@ function mount(root: HTMLElement, context: Context): () => void {
     .then(refresh) // which offers what there is a key for
     .then(() => {
       const asked = known.find((it) => it.id === context.place.id);
-      if (asked && running === "" && !asked.finished && asked.error === "") choose(asked);
+      if (asked && running !== asked.name) choose(asked);
     })
     .catch(context.complain);
   const timer = setInterval(() => void look().catch(context.complain), 500);
