@@ -74,27 +74,41 @@ function one(value: VerbValue, choices: readonly string[], none: string): ValueF
   };
 }
 
-/** Several of a list, with a box each. */
+/** Several of a list, with a box each; of a long one what was not set is folded away. */
 function several(value: VerbValue, choices: readonly string[]): ValueField {
+  const isLong = choices.length > 8;
   const boxes = choices.map((name) => element("input", { type: "checkbox", value: name }));
+  const labels = boxes.map((box, k) => element("label", { class: "tick" }, box, choices[k]!));
+  const front = element("div", { class: "value_boxes" });
+  const others = element("div", { class: "value_boxes" });
+  const count = element("summary");
+  const fold = element("details", {}, count, others);
   const id = `value_${++fields}`;
   const root = element(
     "fieldset",
     { class: "value_field", "aria-describedby": `${id}_about` },
     element("legend", {}, plainName(value.name), value.required ? element("b", {}, " needed") : null),
-    element(
-      "div",
-      { class: "value_boxes" },
-      ...boxes.map((box, k) => element("label", { class: "tick" }, box, choices[k]!)),
-      choices.length === 0 ? element("p", {}, "There is none in this folder.") : null,
-    ),
+    front,
+    fold,
+    choices.length === 0 ? element("p", {}, "There is none in this folder.") : null,
     element("p", { id: `${id}_about`, class: "quiet" }, value.label),
   );
   const chosen = (): string[] => boxes.filter((it) => it.checked).map((it) => it.value);
+  const lay = (): void => {
+    const isInFront = (k: number): boolean => !isLong || chosen().length === 0 || boxes[k]!.checked;
+    front.replaceChildren(...labels.filter((_, k) => isInFront(k)));
+    others.replaceChildren(...labels.filter((_, k) => !isInFront(k)));
+    fold.hidden = others.childElementCount === 0;
+    count.textContent = `${others.childElementCount} more`;
+  };
+  lay();
   return {
     root,
     value: () => (chosen().length > 0 ? chosen() : undefined),
-    set: (to) => boxes.forEach((it) => (it.checked = Array.isArray(to) ? to.includes(it.value) : to === it.value)),
+    set: (to) => {
+      for (const it of boxes) it.checked = Array.isArray(to) ? to.includes(it.value) : to === it.value;
+      lay();
+    },
   };
 }
 
