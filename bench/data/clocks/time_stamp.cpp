@@ -39,6 +39,25 @@ class StampReader {
     return true;
   }
 
+  /// 2026-01-31 or 31.01.2026. Not 01/31/2026, which is a day of another month elsewhere.
+  bool take_date(std::chrono::year_month_day& date) noexcept {
+    int year = 0;
+    int month = 0;
+    int day = 0;
+    const char* const begin = at_;
+    const bool by_year = take_number(4, last_year, year) && take('-') && take_number(2, 12, month) &&
+                         take('-') && take_number(2, 31, day);
+    if (!by_year) {
+      at_ = begin;
+      if (!take_number(2, 31, day) || !take('.') || !take_number(2, 12, month) || !take('.') ||
+          !take_number(4, last_year, year))
+        return false;
+    }
+    date = {std::chrono::year(year), std::chrono::month(static_cast<unsigned>(month)),
+            std::chrono::day(static_cast<unsigned>(day))};
+    return year >= first_year && date.ok();
+  }
+
   /// The digits of a fraction of a second.
   bool take_fraction(std::int64_t& ns) noexcept {
     constexpr int digits_of_ns = 9;
@@ -82,18 +101,12 @@ class StampReader {
 const char* parse_time_stamp(const char* begin, const char* end, char separator, TimeStamp& stamp) noexcept {
   namespace chr = std::chrono;
   StampReader reader(begin, end);
-  int year = 0;
-  int month = 0;
-  int day = 0;
+  chr::year_month_day date{};
   int hour = 0;
   int minute = 0;
   int second = 0;
-  if (!reader.take_number(4, last_year, year) || year < first_year || !reader.take('-') ||
-      !reader.take_number(2, 12, month) || !reader.take('-') || !reader.take_number(2, 31, day))
-    return begin;
-  const chr::year_month_day date{chr::year(year), chr::month(static_cast<unsigned>(month)),
-                                 chr::day(static_cast<unsigned>(day))};
-  if (!date.ok() || !(reader.take('T') || reader.take('t') || (separator != ' ' && reader.take(' '))) ||
+  if (!reader.take_date(date) ||
+      !(reader.take('T') || reader.take('t') || (separator != ' ' && reader.take(' '))) ||
       !reader.take_number(2, 23, hour) || !reader.take(':') || !reader.take_number(2, 59, minute) ||
       !reader.take(':') || !reader.take_number(2, 59, second))
     return begin;

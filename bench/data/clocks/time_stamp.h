@@ -15,11 +15,12 @@ struct TimeStamp {
   bool has_zone = false;  ///< it says where: `ns` is of UTC
 };
 
-/// Reads a date and time of ISO 8601 at the start of [begin, end) and returns where it ends, or `begin` if
-/// there is none: YYYY-MM-DD, 'T' or one blank, hh:mm:ss, a fraction behind '.' or ',' of as many digits as
-/// nanoseconds have (further ones have to be zeros), then nothing, 'Z', or an offset +hh:mm, +hhmm or +hh.
-/// Years are 1950 to 2149, which 64 bits of nanoseconds hold with their differences. No leap second, no
-/// 24:00:00, no date that does not exist. Where columns are separated by commas or blanks, those are no part.
+/// Reads a date and time of ISO 8601, or with a date DD.MM.YYYY, at the start of [begin, end) and returns
+/// where it ends, or `begin` if there is none: YYYY-MM-DD, 'T' or one blank, hh:mm:ss, a fraction behind '.'
+/// or ',' of as many digits as nanoseconds have (further ones have to be zeros), then nothing, 'Z', or an
+/// offset +hh:mm, +hhmm or +hh. Years are 1950 to 2149, which 64 bits of nanoseconds hold with their
+/// differences. No leap second, no 24:00:00, no date that does not exist. Where columns are separated by
+/// commas or blanks, those are no part.
 const char* parse_time_stamp(const char* begin, const char* end, char separator, TimeStamp& stamp) noexcept;
 
 /// Whether a whole field is one.

@@ -97,10 +97,12 @@ std::string column_list(const TextLayout& layout) {
 Unit unit_for(const MapEntry& entry, const TextColumn& column, const std::string& name) {
   const std::string& text = entry.unit.empty() ? column.unit : entry.unit;
   if (text.empty()) {
-    throw std::invalid_argument(
-        fmt::format("{}: column '{}' for {} has no unit in the file; give one in brackets: {}={}[{}]", name,
-                    entry.column, entry.channel, entry.channel, entry.column,
-                    kinds_of(entry.channel).empty() ? "1" : kinds_of(entry.channel).front()));
+    throw std::invalid_argument(fmt::format(
+        "{}: column '{}' for {} has no unit in the file; give one in brackets: {}={}[{}]{}", name,
+        entry.column, entry.channel, entry.channel, entry.column,
+        kinds_of(entry.channel).empty() ? "1" : kinds_of(entry.channel).front(),
+        entry.channel == "time" ? "; moments are read as 2026-01-31T12:00:00.000 or 31.01.2026 12:00:00.000"
+                                : ""));
   }
   Unit unit;
   try {
@@ -116,6 +118,16 @@ Unit unit_for(const MapEntry& entry, const TextColumn& column, const std::string
                     kinds.front() == "N" && unit.si == "kg" ? "; a weight is written gf or kgf" : ""));
   }
   return unit;
+}
+
+/// "M[2]" where that is a column, and no column M in units of 2.
+void take_number_for_name(MapEntry& entry, const TextLayout& layout) {
+  const std::string whole = fmt::format("{}[{}]", entry.column, entry.unit);
+  if (entry.unit.empty() ||
+      std::ranges::find(layout.columns, whole, &TextColumn::name) == layout.columns.end())
+    return;
+  entry.column = whole;
+  entry.unit.clear();
 }
 
 /// Forces share one unit, and a velocity has that of the position by the second.
@@ -196,7 +208,8 @@ std::vector<MapEntry> parse_map(std::string_view text) {
 std::vector<MappedColumn> match_columns(const std::vector<MapEntry>& entries, const TextLayout& layout,
                                         const std::string& name) {
   std::vector<MappedColumn> columns;
-  for (const MapEntry& entry : entries_of_one_column(entries, layout, name)) {
+  for (MapEntry& entry : entries_of_one_column(entries, layout, name)) {
+    take_number_for_name(entry, layout);
     const std::size_t index = entry.number > 0 ? entry.number - 1 : find_column(entry, layout, name);
     const TextColumn& column = layout.columns[index];
     columns.push_back({.channel = entry.channel,

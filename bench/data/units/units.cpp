@@ -34,6 +34,7 @@ constexpr std::array symbols{
     Symbol{"ms", 1e-3, "s"},
     Symbol{"us", 1e-6, "s"},
     Symbol{"µs", 1e-6, "s"},
+    Symbol{"ns", 1e-9, "s"},
     Symbol{"min", 60.0, "s"},
     Symbol{"h", 3600.0, "s"},
     Symbol{"m", 1.0, "m"},

@@ -108,7 +108,8 @@ std::optional<TimeColumn> find_time_column(const TextLayout& layout, std::string
 std::string usual_unit_of_time(double step) {
   constexpr double longest_s = 0.5;
   constexpr double longest_ms = 200.0;
-  return step < longest_s ? "s" : step <= longest_ms ? "ms" : "us";
+  constexpr double longest_us = 200e3;
+  return step < longest_s ? "s" : step <= longest_ms ? "ms" : step <= longest_us ? "us" : "ns";
 }
 
 }  // namespace kerf::bench

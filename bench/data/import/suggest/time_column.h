@@ -23,7 +23,7 @@ struct TimeColumn {
                                                          const std::vector<std::size_t>& columns);
 
 /// The unit that makes such a step one of a recording of force, 1 kHz or not too far from it: "s" below a
-/// half, "ms" up to 200, then "us".
+/// half, "ms" up to 200, "us" up to 200,000, then "ns".
 [[nodiscard]] std::string usual_unit_of_time(double step);
 
 }  // namespace kerf::bench

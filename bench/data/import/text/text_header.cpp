@@ -47,6 +47,19 @@ TextColumn named_column(std::string_view field) {
   return column;
 }
 
+/// "M[1]", "M[2]": of columns of one name the numbers in brackets are none's units.
+void take_numbers_for_names(std::vector<TextColumn>& columns) {
+  const auto is_number = [](std::string_view text) {
+    return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+  };
+  const std::vector<TextColumn> named(columns);
+  for (TextColumn& column : columns) {
+    const auto of_its_name = std::ranges::count(named, column.name, &TextColumn::name);
+    if (of_its_name > 1 && is_number(column.unit) && column.heading.ends_with(']'))
+      column = {.heading = column.heading, .name = column.heading, .unit = {}};
+  }
+}
+
 /// The unit in a field of a units row, "(mm)" or "[N]" or "mm"; none if it does not look like one.
 std::optional<std::string> unit_field(std::string_view field) {
   if (field.empty()) return std::string();
@@ -110,6 +123,7 @@ HeaderLine read_header(TextLayout& layout, std::span<const std::string_view> pre
     layout.header_line = filled.back() + 1;
     layout.columns.resize(std::max(width, fields.size()));
     for (std::size_t i = 0; i < fields.size(); ++i) layout.columns[i] = named_column(fields[i]);
+    take_numbers_for_names(layout.columns);
     header = {.number = layout.header_line, .names = fields.size()};
   } else if (!filled.empty() && layout.separator == ',' && may_name_columns(fields)) {
     header = {.number = filled.back() + 1, .names = fields.size(), .is_sure = false};

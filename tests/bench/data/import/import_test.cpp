@@ -77,6 +77,22 @@ TEST(Import, RefusesNumbersInGroupsWhoseLargestWouldBeLost) {
     EXPECT_EQ(imported(grouped(field, "999.5")).bad_lines.size(), 1U) << field;
 }
 
+TEST(Import, LeavesOutALineThatLacksAValueBesideOneOfThreeDecimals) {
+  EXPECT_THAT(imported("0.001,1,1\n0.002,2,2\n0.003,,3\n0.004,2,3\n").bad_lines, ElementsAre(3U));
+  EXPECT_THAT(imported("0,001;1;1\n0,002;2;2\n0,003;--;3\n0,004;2;3\n").bad_lines, ElementsAre(3U));
+  EXPECT_THAT(imported("0.001,1,1\n0.002,2,2\n0.003,2,3\n0.004,1").bad_lines, ElementsAre(4U)) << "cut short";
+}
+
+TEST(Import, TakesColumnsOfOneNameByTheirNumbers) {
+  const std::string text = "M[1],M[2],M[3],ratio [1]\n0,1,2,0.5\n1,2,3,0.5\n2,3,4,0.5\n";
+  const Imported result = imported(text, {}, "time=M[1][s],position=M[2][mm],force=M[3][N],ratio=ratio");
+  EXPECT_THAT(result.recording.time, ElementsAre(0.0, 1.0, 2.0));
+  EXPECT_THAT(result.recording.force_measured, ElementsAre(2.0, 3.0, 4.0));
+  EXPECT_EQ(result.recording.channels.at(0).unit, "1") << "a column of its own name, in units of 1";
+  EXPECT_THAT([&] { (void)imported(text, {}, "time=M[1],position=M[2][mm]"); },
+              testing::ThrowsMessage<std::invalid_argument>(HasSubstr("give one in brackets: time=M[1][s]")));
+}
+
 TEST(Import, TakesFahrenheitInCelsius) {
   const Imported result =
       imported("0,1,32\n1,1,212\n", {}, "time=1[s],position=2[mm],heat=3[degF],step=3[degF/s]");

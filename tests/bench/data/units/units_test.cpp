@@ -13,6 +13,7 @@ constexpr double degree = std::numbers::pi / 180.0;
 
 TEST(Units, ConvertWhatLabsWriteToSi) {
   EXPECT_EQ(parse_unit("ms"), (Unit{1e-3, "s"}));
+  EXPECT_EQ(parse_unit("ns"), (Unit{1e-9, "s"}));
   EXPECT_EQ(parse_unit("um"), (Unit{1e-6, "m"}));
   EXPECT_EQ(parse_unit("deg"), (Unit{degree, "rad"}));
   EXPECT_EQ(parse_unit("mN"), (Unit{1e-3, "N"}));
