@@ -1,12 +1,16 @@
 #include "fits/row_doubts.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/core.h>
 
 #include "fits/fit_series.h"
+#include "signal/quantiles.h"
 
 namespace kerf::bench {
 namespace {
@@ -34,6 +38,99 @@ std::string nothing_changes(const AxisSeries& series, const fitting::FitOptions&
       "say "
       "how the force depends on the motion",
       mean, unit, jnd, unit);
+}
+
+double quantile_of(std::vector<double>& values, double share) {
+  constexpr std::size_t fewest = 3;
+  return values.size() < fewest ? std::numeric_limits<double>::quiet_NaN()
+                                : quantile(std::move(values), share);
+}
+
+/// The force over the depth, in fiftieths of it.
+class ForceOverDepth {
+ public:
+  explicit ForceOverDepth(const AxisSeries& series)
+      : deepest_(*std::ranges::max_element(series.penetration)) {
+    const std::size_t stride = std::max<std::size_t>(1, series.force.size() / looked_at);
+    std::array<std::vector<double>, bins> going_in;
+    std::vector<double> first_in, first_out;
+    double pulling = 0.0;  // rows more than others
+    for (std::size_t i = 0; i < series.force.size(); i += stride) {
+      const double share = series.penetration[i] / deepest_;
+      const double velocity = series.velocity[i];
+      if (!(share >= 0.0 && share <= 1.0) || velocity == 0.0) continue;
+      const auto bin = std::min(bins - 1, static_cast<std::size_t>(share * bins));
+      if (bin == 0) (velocity > 0.0 ? first_in : first_out).push_back(series.force[i]);
+      if (!(velocity > 0.0)) continue;
+      going_in[bin].push_back(std::abs(series.force[i]));
+      pulling += series.force[i] < 0.0 ? 1.0 : -1.0;
+    }
+    std::ranges::transform(going_in, upper_.begin(), [](auto& sizes) { return quantile_of(sizes, 0.75); });
+    for (const double upper : upper_) most_ = std::fmax(most_, upper);
+    const double in = quantile_of(first_in, 0.5);
+    const double out = quantile_of(first_out, 0.5);
+    const bool one_way = in * out > 0.0 && (in > 0.0 || pulling > 0.0);
+    if (one_way) at_first_ = std::abs(in) < std::abs(out) ? in : out;
+  }
+
+  [[nodiscard]] double most() const noexcept { return most_; }
+  /// Where the tool was least engaged, whichever way it went; 0 where it went with and against the force, or
+  /// was pulled though it is pushed elsewhere.
+  [[nodiscard]] double at_first() const noexcept { return at_first_; }
+  /// The share of the depth that the tool goes without a force; 0 where it hardly was there.
+  [[nodiscard]] double onset(double felt) const {
+    std::size_t known = 0;
+    for (std::size_t bin = 0; bin < bins; ++bin) {
+      if (std::isnan(upper_[bin])) continue;
+      if (upper_[bin] > felt) return 2 * known < bin ? 0.0 : static_cast<double>(bin) / bins;
+      ++known;
+    }
+    return 0.0;
+  }
+  /// At a share of the depth, or the next one where the tool was.
+  [[nodiscard]] double at(double share) const {
+    const auto from = upper_.begin() + static_cast<std::ptrdiff_t>(share * bins);
+    const auto found = std::find_if(from, upper_.end(), [](double upper) { return !std::isnan(upper); });
+    return found == upper_.end() ? 0.0 : *found;
+  }
+
+ private:
+  static constexpr std::size_t bins = 50;
+  static constexpr std::size_t looked_at = 50'000;
+
+  double deepest_;
+  std::array<double, bins> upper_{};  ///< the upper quartile of its size, going in; NaN of too few rows
+  double most_ = 0.0;
+  double at_first_ = 0.0;
+};
+
+/// A law of contact begins at penetration 0. Of a force that stiffens the beginning is not felt, and nothing
+/// is said: where one sets in, a quarter of the rest of the way on it is a tenth of the largest.
+std::string begins_elsewhere(const AxisSeries& series, const fitting::FitOptions& settings) {
+  constexpr double late = 0.15;
+  constexpr double gentle = 0.1;
+  constexpr double preloaded = 0.2;
+  constexpr double least_share = 0.02;
+  const auto [smallest, largest] = std::ranges::minmax_element(series.force);
+  const ForceOverDepth force(series);
+  if (*smallest == *largest || !(force.most() > 0.0)) return "";  // which no fit takes
+  const std::string& unit = settings.force_unit;
+  const char* const mend = "; --contact POSITION says where it begins, 'kerf prepare --onset' finds it";
+  const double first = force.at_first();
+  if (std::abs(first) > std::max(settings.jnd.threshold, preloaded * force.most())) {
+    const std::string turned =
+        fmt::format(": is its sign turned? --map 'force=COLUMN[-1 {}]' turns it", unit);
+    return fmt::format(
+        "where the tool was least engaged, and penetration is 0, a force of {:.3g} {} {} already, of {:.3g} "
+        "{} going in{}",
+        std::abs(first), unit, first < 0.0 ? "pulls" : "pushes", force.most(), unit,
+        first < 0.0 ? turned : mend);
+  }
+  const double onset = force.onset(std::max(settings.jnd.threshold, least_share * force.most()));
+  if (!(onset > late && force.at(onset + 0.25 * (1.0 - onset)) > gentle * force.most())) return "";
+  return fmt::format(
+      "going in, the force begins at {:.0f} % of the depth, where laws of contact have it begin at 0{}",
+      100.0 * onset, mend);
 }
 
 /// By time, since rows that are not finite are no part of a series. Returns how many are left.
@@ -85,6 +182,7 @@ std::vector<std::string> doubts_of(const AxisSeries& series, const fitting::FitO
   std::vector<std::string> doubts;
   std::string of_the_force = nothing_felt(series, settings);
   if (of_the_force.empty()) of_the_force = nothing_changes(series, settings);
+  if (of_the_force.empty()) of_the_force = begins_elsewhere(series, settings);
   if (!of_the_force.empty()) doubts.push_back(std::move(of_the_force));
   if (settings.folds >= 2 && !series.cycle.empty() && *std::ranges::max_element(series.cycle) == 1) {
     doubts.emplace_back(

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -12,6 +13,7 @@
 #include "bench/analysis/choose/known_laws.h"
 #include "fits/fit_recording.h"
 #include "fits/rendered_series.h"
+#include "fits/row_doubts.h"
 #include "recordings/axis_series.h"
 
 namespace kerf::bench {
@@ -54,6 +56,35 @@ TEST(ContactRows, KeepAToolThatWasPutDownFromDeciding) {  // finding L1
   FitRecordingOptions all = options;
   all.rows.rows = Counted::all;
   EXPECT_LT(fit_recording(idle, all).jnd_n, 0.5 * without.jnd_n) << "asked for, it decides";
+}
+
+/// Strokes from penetration 0 to 20 mm and back, and the force at each place and way.
+template <typename Force>
+AxisSeries strokes_with(const Force& force) {
+  AxisSeries series = series_of(8000, 1e-3);
+  for (std::size_t i = 0; i < series.time_s.size(); ++i) {
+    const double phase = 2.0 * std::numbers::pi * series.time_s[i];
+    series.penetration[i] = 0.01 * (1.0 - std::cos(phase));
+    series.velocity[i] = 0.01 * 2.0 * std::numbers::pi * std::sin(phase);
+    series.force[i] = force(series.penetration[i], series.velocity[i]);
+  }
+  return series;
+}
+
+TEST(RowDoubts, SayWhereTheForceBeginsIfNotAtContact) {
+  const auto doubts = [](const auto& force) { return doubts_of(strokes_with(force), {.folds = 0}); };
+  EXPECT_THAT(doubts([](double x, double) { return 200.0 * std::max(0.0, x - 0.01); }),
+              testing::ElementsAre(HasSubstr("going in, the force begins at 50 % of the depth")));
+  EXPECT_THAT(doubts([](double x, double) { return 1.0 + 200.0 * x; }),
+              testing::ElementsAre(HasSubstr("a force of 1.02 N pushes already")));
+  EXPECT_THAT(doubts([](double x, double) { return -1.0 - 200.0 * x; }),
+              testing::ElementsAre(HasSubstr("--map 'force=COLUMN[-1 N]' turns it")));
+  EXPECT_THAT(doubts([](double x, double) { return 200.0 * x; }), testing::IsEmpty());
+  EXPECT_THAT(doubts([](double x, double) { return 2e-3 * std::expm1(400.0 * x); }), testing::IsEmpty())
+      << "what stiffens begins gently";
+  EXPECT_THAT(doubts([](double x, double v) { return 100.0 * x + std::copysign(0.8, v); }),
+              testing::IsEmpty())
+      << "friction turns with the motion";
 }
 
 TEST(RenderedSeries, IsAPeriodLate) {
