@@ -47,6 +47,7 @@ void decide(EffectVerdict& verdict, const Best& without, const Best& with, const
     verdict.matter = Matter::matters;
     verdict.why = figures;
   } else {
+    verdict.matter = Matter::not_known;
     verdict.why = fmt::format("{}: taking it in mends {:.2g} JND", figures, mended_n / jnd_n);
   }
 }
@@ -54,7 +55,7 @@ void decide(EffectVerdict& verdict, const Best& without, const Best& with, const
 }  // namespace
 
 std::string_view name_of(Matter matter) noexcept {
-  constexpr std::array<std::string_view, 3> names{"matters", "replaceable", "does not matter"};
+  constexpr std::array<std::string_view, 4> names{"matters", "replaceable", "does not matter", "not known"};
   return names[static_cast<std::size_t>(matter)];
 }
 

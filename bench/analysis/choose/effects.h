@@ -16,7 +16,8 @@ struct Candidate;
 enum class Matter {
   matters,      ///< left out, the error exceeds the JND; taken in, it falls
   replaceable,  ///< the law that serves has it, and a richer law does without
-  does_not,     ///< laws without it stay within the JND, or it mends less than that
+  does_not,     ///< laws without it stay within the JND
+  not_known,    ///< neither with it nor without is a law within the JND, and it mends less than that
 };
 [[nodiscard]] std::string_view name_of(Matter matter) noexcept;
 

@@ -70,10 +70,19 @@ double as_number(Stable stable) {
   return stable == Stable::yes ? 1.0 : 0.0;
 }
 
-/// 1: it matters, 0: it does not; half: a richer law does without it.
+/// 1: it matters, 0: it does not; half: a richer law does without it; NaN: it is not known.
 double as_number(Matter matter) {
-  if (matter == Matter::replaceable) return 0.5;
-  return matter == Matter::matters ? 1.0 : 0.0;
+  switch (matter) {
+    case Matter::matters:
+      return 1.0;
+    case Matter::replaceable:
+      return 0.5;
+    case Matter::does_not:
+      return 0.0;
+    case Matter::not_known:
+      break;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
 }
 
 CellNumbers numbers_of(const LawChoice& choice) {

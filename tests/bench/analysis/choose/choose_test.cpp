@@ -302,6 +302,30 @@ TEST(EffectsThatMatter, AreThoseOfTheLawThatIsKnown) {
   EXPECT_EQ(matter_of(stiff, Effect::stiffening), Matter::matters);
 }
 
+TEST(EffectsThatMatter, AreNotKnownWhereNoLawComesNear) {
+  const auto candidate = [](const char* name, const Effects& effects, double error_jnd) {
+    Candidate one{
+        .law = {.name = name, .model = name, .law_options = {}, .parameters = 2, .effects = effects},
+        .file = LawFile{.law = models::Law::make("kelvin", std::array{1.0, 1.0, 1.0}),
+                        .contact = {},
+                        .axis = "x",
+                        .fit = {}}};
+    one.converged = true;
+    one.error_n = one.error_jnd = error_jnd;
+    one.within_jnd = error_jnd <= 1.0;
+    return one;
+  };
+  const auto verdict = [&](double without, double with) {
+    const std::vector candidates{candidate("plain", {}, without), candidate("cuts", {Effect::cutting}, with)};
+    return judge_effects(candidates, std::nullopt, 1.0).at(0).matter;
+  };
+  EXPECT_EQ(verdict(5.5, 10.0), Matter::not_known);
+  EXPECT_EQ(verdict(5.5, 5.45), Matter::not_known);
+  EXPECT_EQ(verdict(5.5, 0.9), Matter::matters);
+  EXPECT_EQ(verdict(5.5, 2.0), Matter::matters) << "it mends more than a JND";
+  EXPECT_EQ(verdict(0.9, 10.0), Matter::does_not);
+}
+
 TEST(EffectsThatMatter, AreAllInTheLawThatIsTaken) {
   for (const test::KnownLaw& known : test::known_laws()) {
     const LawChoice choice = choose(cut_of(known.law));
