@@ -390,7 +390,7 @@ class Findings {
 
   void write_times() {
     if (analysis_.times.trials > 0 && analysis_.times.median_s < 0.5)
-      warn(fmt::format("half of the answers came within {:.2f} s: too fast to have felt both samples",
+      warn(fmt::format("half of the answers came within {:.2f} s of when one could be given: hardly weighed",
                        analysis_.times.median_s));
   }
 
