@@ -105,7 +105,11 @@ class CycleDesk {
     for (const nlohmann::json& one : fit["recordings"]) {
       if (!one.is_object() || one.value("uuid", "") != about.header.uuid) continue;
       const auto known = one.find("cycles_sha256");
-      if (known == one.end() || !known->is_string()) return unknown;
+      if (known == one.end()) return unknown;  // of an earlier version
+      if (known->is_null() && about.cycles && one.value("axis", "") == about.axes[about.cycles->axis].name)
+        return {{"earlier", true},
+                {"why", "It is of a time before cycles were saved: of all rows. Fit again."}};
+      if (!known->is_string()) return unknown;
       if (known->get<std::string>() == cycles_sha256_of(about)) return {{"earlier", false}, {"why", ""}};
       const std::vector<ToldEdit> edits = edits_of(about);
       return {{"earlier", true},

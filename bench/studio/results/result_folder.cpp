@@ -20,6 +20,7 @@ constexpr std::size_t longest_stem = 60;
 fs::path free_name(const Workspace& workspace, const std::string& stem, std::string_view ending) {
   for (int i = 1; i < max_names; ++i) {
     const std::string name = i == 1 ? stem : fmt::format("{}-{}", stem, i);
+    if (i > 1 && workspace.regular_file(name + ".h5")) continue;  // whose own results are called so
     try {
       fs::path file = workspace.new_file(name, ending);
       require_output(file, false);

@@ -235,6 +235,24 @@ TEST_F(CycleRoutes, TellAFitOfEarlierCycles) {
   EXPECT_EQ(earlier()["earlier"], nullptr) << "an earlier version did not say";
 }
 
+TEST_F(CycleRoutes, TellAFitFromBeforeCyclesWereSaved) {
+  schema::write_recording(file(), scissors(false));
+  const fs::path fits = folder_ / "cut.fit";
+  ASSERT_EQ(
+      test::run_kerf({"fit", file().string(), "--models", "kelvin", "--folds", "2", "-o", fits.string()})
+          .exit_status,
+      0);
+  const std::string fit = workspace_.id_of(fits / "fit.json");
+  const auto earlier = [&] {
+    return json::parse(ask_.get("/api/cycles/fit", {{"id", id_}, {"fit", fit}}).body);
+  };
+  EXPECT_EQ(earlier()["earlier"], nullptr) << "there are none yet";
+  const json view = stored();
+  ASSERT_EQ(save(view, {{"phases", moved(view, 3, 25)}}).status, 200);
+  EXPECT_EQ(earlier()["earlier"], true);
+  EXPECT_THAT(earlier()["why"].get<std::string>(), HasSubstr("before cycles were saved"));
+}
+
 TEST_F(CycleRoutes, FindCyclesWhereNoneAreStored) {
   schema::write_recording(file(), scissors(false));
   const json view = stored();

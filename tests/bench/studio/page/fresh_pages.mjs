@@ -212,4 +212,69 @@ export const tests = {
     }
     expectNoComplaints(page);
   },
+
+  async LetsTextInWhatIsOpenedBePressed({ browser, studio }) {
+    const page = await prepare({ browser, studio });
+    await open(page, studio, "time");
+    await page.locator(".popover summary", { hasText: "Traces" }).click();
+    const box = page.locator(".popover[open] label").first();
+    const tick = box.locator("input");
+    const before = await tick.isChecked();
+    const { x, y, width, height } = await box.boundingBox();
+    await page.mouse.click(x + width - 4, y + height / 2); // the words, not the box: the tab had crashed
+    expectEqual(await tick.isChecked(), !before, "a press on the words ticks the box");
+    expect(await page.locator(".popover[open]").count(), "it is open still");
+    await page.locator(".recording_head").click({ position: { x: 5, y: 5 } });
+    await until("a press elsewhere closes it", async () => (await page.locator(".popover[open]").count()) === 0);
+    await page.locator("summary", { hasText: "Save plot" }).first().click();
+    const menu = page.locator("details.out[open] > div").first();
+    await menu.click({ position: { x: 2, y: 2 } });
+    expect(await page.locator("details.out[open]").count(), "the menu is open still");
+    expectNoComplaints(page);
+  },
+
+  async OrdersAnotherFitBesideTheFirst({ browser, studio, screenshots }) {
+    for (const size of [
+      [1024, 720],
+      [1280, 720],
+      [1920, 1080],
+    ]) {
+      const page = await prepare({ browser, studio }, { viewport: { width: size[0], height: size[1] } });
+      await open(page, studio, "fits");
+      await page.locator("table.fits").waitFor();
+      await page.locator(".order_fold summary").first().click();
+      const press = page.getByRole("button", { name: "Fit", exact: true });
+      await press.scrollIntoViewIfNeeded();
+      const isOnTop = await press.evaluate((it) => {
+        const { x, y, width, height } = it.getBoundingClientRect();
+        return it.contains(document.elementFromPoint(x + width / 2, y + height / 2));
+      });
+      expect(isOnTop, `nothing lies over the button at ${size.join(" x ")}`);
+      await page.screenshot({ path: join(screenshots, `order-fit-${size[0]}.png`) });
+      expectNoComplaints(page);
+      await page.close();
+    }
+  },
+
+  async KnowsWhoseAFitIsWhereNamesEndInNumbers({ browser, studio }) {
+    studio.record("pork belly 1.h5", 10);
+    studio.record("cut-2.h5", 10);
+    studio.kerfOrThrow("fit", "pork belly 1.h5", "--models", "kelvin", "--folds", "2", "-o", "pork-belly-1.fit");
+    studio.kerfOrThrow("fit", "cut-2.h5", "--models", "kelvin", "--folds", "2", "-o", "cut-2.fit");
+    studio.record("cut.h5", 20);
+    for (const name of ["cut.fit", "cut-3.fit"])
+      studio.kerfOrThrow("fit", "cut.h5", "--models", "kelvin", "--folds", "2", "-o", name);
+    await studio.serve();
+    const page = await openPage(browser);
+    const fitsOf = async (name) => {
+      await page.goto(studio.page(`recording/${await studio.id("recordings", name)}/fits`));
+      await page.locator("table.fits").waitFor();
+      const list = page.locator(".tab_head select");
+      return [await list.locator("option").allTextContents(), await list.locator("option:checked").textContent()];
+    };
+    expectEqual(await fitsOf("pork belly 1.h5"), [["pork-belly-1.fit"], "pork-belly-1.fit"], "of a name with blanks");
+    expectEqual(await fitsOf("cut-2.h5"), [["cut-2.fit"], "cut-2.fit"], "of a recording called cut-2");
+    expectEqual(await fitsOf("cut.h5"), [["cut.fit", "cut-3.fit"], "cut-3.fit"], "the newest is shown");
+    expectNoComplaints(page);
+  },
 };

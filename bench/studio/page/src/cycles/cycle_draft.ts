@@ -114,7 +114,8 @@ function numberIn(theirs: Draft, base: Draft, cycle: number): number {
  * were split or merged here are put on cycles that nobody else has touched, or not at all.
  */
 export function onTop(base: Draft, mine: Draft, theirs: Draft, rows: number): { draft: Draft; lost: number } {
-  if (mine.settings) return { draft: mine, lost: 0 }; // found anew: theirs is what it takes the place of
+  // Found anew by other settings: theirs is what it takes the place of. Cycles that nobody has saved are found unasked.
+  if (JSON.stringify(mine.settings) !== JSON.stringify(base.settings)) return { draft: mine, lost: 0 };
   if (divisionOf(base) !== divisionOf(mine))
     return areAlike(base, theirs) ? { draft: mine, lost: 0 } : { draft: theirs, lost: 1 };
   let draft = theirs;

@@ -10,7 +10,9 @@ export class Popover {
   constructor(text: string, content: HTMLElement, gone: AbortSignal) {
     this.label.textContent = text;
     const head = element("summary", { class: "popover_head" }, this.label);
-    this.root = element("details", { class: "popover" }, head, element("div", { class: "popover_body" }, content));
+    // It takes the focus where text in it is pressed: else that goes to the page behind, and what is pressed is closed.
+    const body = element("div", { class: "popover_body", tabindex: -1 }, content);
+    this.root = element("details", { class: "popover" }, head, body);
     const close = (isBack: boolean): void => {
       if (!this.root.open) return;
       this.root.open = false;
@@ -24,7 +26,8 @@ export class Popover {
       { signal: gone },
     );
     this.root.addEventListener("focusout", ({ relatedTarget }) => {
-      if (relatedTarget instanceof Node && !this.root.contains(relatedTarget)) close(false);
+      // Afterwards: Chromium does not survive that what has the focus is hidden while it loses it.
+      if (relatedTarget instanceof Node && !this.root.contains(relatedTarget)) setTimeout(() => close(false));
     });
     addEventListener("keydown", (event) => event.key === "Escape" && close(true), { signal: gone });
   }

@@ -2,6 +2,7 @@
 
 import { rmSync } from "node:fs";
 import { join } from "node:path";
+import { fileURLToPath } from "node:url";
 
 import { audit } from "../accessibility.mjs";
 import { expect, expectEqual, expectNoComplaints, openPage, until } from "../harness.mjs";
@@ -264,6 +265,27 @@ export const tests = {
     );
     const { phases } = await view(studio);
     expectEqual(phases.find((it) => it[0] === 3 && it[1] === 3)[2], wanted, "the row of the second");
+    expectNoComplaints(two, [/409/]);
+  },
+
+  async PutsOneEditOnTopOfAnotherWhereNobodyHadSavedCycles({ browser, studio }) {
+    const punch = fileURLToPath(new URL("../../../../../examples/data/punch.txt", import.meta.url));
+    const map = "time=time,position=angle,force=force";
+    studio.kerfOrThrow("import", punch, "--map", map, "-o", "cut.h5"); // whose cycles are found unasked
+    await studio.serve();
+    const [one, two] = [await prepare({ browser, studio }), await prepare({ browser, studio })];
+    const first = await dragged(one, await handleOf(one, 2), 12);
+    const second = await dragged(two, await handleOf(two, 3), 12);
+    await save(one);
+    await saved(one);
+    await save(two);
+    await two.getByRole("button", { name: "Load them, mine on top" }).click();
+    await until("its own change is there still", async () => (await state(two)) === "not saved");
+    await save(two);
+    await saved(two);
+    const { phases } = await view(studio);
+    const closing = (cycle) => phases.find((it) => it[0] === cycle && it[1] === 3)[2];
+    expectEqual([closing(2), closing(3)], [first, second], "the rows of both");
     expectNoComplaints(two, [/409/]);
   },
 

@@ -15,21 +15,35 @@ export function resultsOf(
   kinds: readonly WorkspaceFile["kind"][],
 ): WorkspaceFile[] {
   const stem = stemOf(recording);
-  const is = (it: WorkspaceFile): boolean => kinds.includes(it.kind) && stemOfResult(it) === stem;
-  const all = workspace.files.filter(is).sort(byName);
+  const stems = stemsOf(workspace);
+  const is = (it: WorkspaceFile): boolean => kinds.includes(it.kind) && stemOfResult(it, stems) === stem;
+  const all = workspace.files.filter(is).sort(byAge);
   const near = all.filter((it) => folderOf(resultName(it)) === folderOf(recording));
   return near.length > 0 ? near : all;
 }
 
 /** The recording that a result is of, where the folder has one of its name. */
 export function recordingOf(workspace: Workspace, result: WorkspaceFile): WorkspaceRecording | undefined {
-  const stem = stemOfResult(result);
+  const stem = stemOfResult(result, stemsOf(workspace));
   const all = workspace.recordings.filter((it) => !it.partial && stemOf(it.name) === stem);
   return all.find((it) => folderOf(it.name) === folderOf(resultName(result))) ?? all[0];
 }
 
-function stemOfResult(result: WorkspaceFile): string {
-  return (resultName(result).split("/").pop() ?? "").replace(/(-\d+)?\.[a-z]+$/, "");
+/** Of all recordings of the folder. */
+export function stemsOf(workspace: Workspace): Set<string> {
+  return new Set(workspace.recordings.map((it) => stemOf(it.name)));
+}
+
+/** "cut" of "cut.fit" and of its second, "cut-2.fit"; "cut-2" where a recording is called that. */
+export function stemOfResult(result: WorkspaceFile, stems: ReadonlySet<string>): string {
+  const whole = (resultName(result).split("/").pop() ?? "").replace(/\.[a-z]+$/, "");
+  return stems.has(whole) ? whole : whole.replace(/-\d+$/, "");
+}
+
+/** As the server names them: "cut.fit", "cut-2.fit", "cut-10.fit". */
+function byAge(one: WorkspaceFile, other: WorkspaceFile): number {
+  const stem = (it: WorkspaceFile): { name: string } => ({ name: resultName(it).replace(/\.[a-z]+$/, "") });
+  return byName(stem(one), stem(other)) || byName(one, other);
 }
 
 export function newest<Result>(files: readonly Result[]): Result | undefined {

@@ -1,7 +1,7 @@
 import type { Workspace, WorkspaceFile, WorkspaceRecording, WorkspaceSession } from "../../api/workspace";
 import type { StudyEntry } from "../../api/studies";
-import { stemOf } from "../../results/of_recording/files";
-import { folderOf, resultName } from "../../results/names";
+import { stemOf, stemOfResult, stemsOf } from "../../results/of_recording/files";
+import { folderOf } from "../../results/names";
 import { plain } from "../../ui/numbers";
 import { bytes, length } from "../../recordings/recording_list";
 
@@ -35,11 +35,12 @@ export const orders: readonly { value: Order; text: string }[] = [
 ];
 
 /** Which kinds of result a recording of that stem has: "cut" -> fit, chart. */
-function resultsByStem(files: readonly WorkspaceFile[]): Map<string, Set<string>> {
+function resultsByStem(workspace: Workspace): Map<string, Set<string>> {
+  const stems = stemsOf(workspace);
   const found = new Map<string, Set<string>>();
-  for (const it of files) {
+  for (const it of workspace.files) {
     if (it.kind !== "fit" && it.kind !== "chart" && it.kind !== "choice") continue;
-    const stem = (resultName(it).split("/").pop() ?? "").replace(/(-\d+)?\.[a-z]+$/, "");
+    const stem = stemOfResult(it, stems);
     const of = found.get(stem) ?? new Set();
     found.set(stem, of.add(it.kind));
   }
@@ -95,7 +96,7 @@ function studyEntry(file: WorkspaceFile, known: StudyEntry | undefined): Entry {
 export function entriesOf(kind: Kind, workspace: Workspace, studies: readonly StudyEntry[]): Entry[] {
   switch (kind) {
     case "recordings": {
-      const results = resultsByStem(workspace.files);
+      const results = resultsByStem(workspace);
       return workspace.recordings.map((it) => recordingEntry(it, results));
     }
     case "studies":

@@ -66,7 +66,7 @@ export function menu(
     element("summary", {}, title),
     element(
       "div",
-      {},
+      { tabindex: -1 }, // as in a Popover
       ...more,
       element(
         "div",
@@ -76,8 +76,8 @@ export function menu(
       said,
     ),
   );
-  details.addEventListener("focusout", (event) => {
-    if (event.relatedTarget instanceof Node && !details.contains(event.relatedTarget)) details.open = false;
+  details.addEventListener("focusout", ({ relatedTarget }) => {
+    if (relatedTarget instanceof Node && !details.contains(relatedTarget)) setTimeout(() => (details.open = false));
   });
   return details;
 }
