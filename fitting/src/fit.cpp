@@ -99,8 +99,17 @@ void warn_of_a_misfit(FitResult& result) {
   result.warnings.push_back(warning.str());
 }
 
+/// Whether the law pulls where the tool is on the other side, and goes the other way.
+bool can_pull(const Trained& law, Samples samples) {
+  for (models::Motion& motion : samples.motion)
+    motion = {.penetration = -motion.penetration, .velocity = -motion.velocity};
+  const std::vector<double> force = rendered(law.problem, law.solution.values, samples);
+  return std::ranges::any_of(force, [](double one) { return one < 0.0; });
+}
+
 /// What a law that only pushes leaves of a force that pulls is no noise.
-void warn_of_pulling(FitResult& result, const std::vector<double>& residuals, const Samples& samples) {
+void warn_of_pulling(FitResult& result, const Trained& law, const std::vector<double>& residuals,
+                     const Samples& samples) {
   constexpr double noteworthy = 0.01;  // of the samples, and of the largest force
   const double largest = samples.largest_force;
   std::size_t pulling = 0;
@@ -109,7 +118,7 @@ void warn_of_pulling(FitResult& result, const std::vector<double>& residuals, co
     pulling += samples.force[i] < -noteworthy * largest ? 1 : 0;
   }
   const double share = static_cast<double>(pulling) / static_cast<double>(samples.size());
-  if (share < noteworthy) return;
+  if (share < noteworthy || can_pull(law, samples)) return;
   std::ostringstream warning;
   warning << std::lround(100.0 * share) << " % of the samples pull, and this law only pushes";
   const auto options = models::Law::options(result.model);
@@ -146,7 +155,7 @@ void measure(FitResult& result, const Trained& law, const Samples& samples, cons
   measure_rendered(result, rendered_residuals(law.problem, law.solution.values, samples, options.render),
                    samples);
   warn_of_a_misfit(result);
-  warn_of_pulling(result, residuals, samples);
+  warn_of_pulling(result, law, residuals, samples);
 }
 
 FitResult fit_samples(std::string_view model, const Samples& samples, const FitOptions& options) {
