@@ -199,6 +199,35 @@ TEST(Fit, WorseThanTheMeanOfTheForceIsSaidToBeAndNotChosen) {
   EXPECT_EQ(choose_simplest(results, strokes.series(), {.folds = 2}).model, "");
 }
 
+TEST(Fit, OfFewStrokesAmongLongRestsIsThatOfTheStrokes) {
+  // 60 strokes of 0.7 s, one every 20 s: a search that began on a row in 60 would see none of them relax.
+  const Law tissue = Law::make("kelvin", std::vector{150.0, 400.0, 60.0});
+  constexpr double period_s = 0.01;
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> noise(0.0, 0.02);
+  Series series;
+  std::vector<double> time_s, penetration, velocity, force;
+  std::vector<std::uint8_t> counts;
+  Law::State state = tissue.initial_state();
+  for (std::size_t i = 0; i < 120'000; ++i) {
+    const double in_turn_s = period_s * static_cast<double>(i % 2000) - 5.0;
+    const bool moves = in_turn_s >= 0.0 && in_turn_s < 0.7;
+    const double phase = moves ? 2.0 * M_PI * in_turn_s / 0.7 : 0.0;
+    time_s.push_back(period_s * static_cast<double>(i));
+    penetration.push_back(0.005 * (1.0 - std::cos(phase)));
+    velocity.push_back(0.005 * 2.0 * M_PI / 0.7 * std::sin(phase));
+    force.push_back(tissue.step(state, models::Motion{penetration.back(), velocity.back()}, period_s).force +
+                    noise(random));
+    counts.push_back(in_turn_s > -0.1 && in_turn_s < 0.8 ? 1 : 0);
+  }
+  series = {
+      .time_s = time_s, .penetration = penetration, .velocity = velocity, .force = force, .counts = counts};
+  const FitResult result = fit("kelvin", series, {.folds = 2});
+  EXPECT_NEAR(result.rmse, 0.02, 5e-4);
+  EXPECT_NEAR(result.cv_rmse, 0.02, 5e-4);
+  expect_values(result, tissue.values(), 0.02);
+}
+
 TEST(Fit, OfAForceThatPullsSaysThatTheLawCannot) {
   Strokes strokes(2000, 0.0, models::Law::make("precontact", std::vector{300.0, 1e-6}));
   for (std::size_t i = 0; i < strokes.force.size(); i += 10) strokes.force[i] = -5.0;
@@ -206,6 +235,11 @@ TEST(Fit, OfAForceThatPullsSaysThatTheLawCannot) {
   EXPECT_THAT(pushes.warnings, Contains(HasSubstr("10 % of the samples pull, and this law only pushes")));
   const FitResult pulls = fit("friction", strokes.series(), {.folds = 0});
   EXPECT_THAT(pulls.warnings, testing::Not(Contains(HasSubstr("only pushes"))));
+  // The same of friction that pulls nowhere along this motion, beside an offset.
+  Strokes offset(2000, 0.0, models::Law::make("precontact", std::vector{300.0, 1e-6}));
+  for (std::size_t i = 0; i < offset.force.size(); ++i) offset.force[i] += i % 20 == 0 ? -150.0 : 50.0;
+  const FitResult friction = fit("friction", offset.series(), {.folds = 0});
+  EXPECT_THAT(friction.warnings, testing::Not(Contains(HasSubstr("only pushes"))));
 }
 
 TEST(Fit, SaysWhichProductTheDataTell) {

@@ -18,7 +18,17 @@
 namespace kerf::fitting {
 namespace {
 
-constexpr std::size_t thinned_samples = 2000;
+/// How many samples a search begins on: ten while the tool goes through its range at its fastest, so that a
+/// law with a memory is shown how the force builds up and fades; few strokes among long rests need many.
+std::size_t enough_to_begin(const Samples& samples) {
+  constexpr double fewest = 2000.0;
+  constexpr double most = 200'000.0;
+  constexpr double in_one_way = 10.0;
+  double fastest = 0.0;
+  for (const models::Motion& motion : samples.motion) fastest = std::max(fastest, std::abs(motion.velocity));
+  const double ways = fastest * samples.duration_s / std::max(samples.most - samples.least, 1e-12);
+  return static_cast<std::size_t>(std::clamp(in_one_way * ways, fewest, most));
+}
 
 constexpr int max_iterations = 2000;
 
@@ -66,9 +76,10 @@ Solution begin_on(const Problem& problem, const Samples& few, const Weights& lig
 /// On a thinned series, which is where a search of all samples begins: a law that follows the motion at once
 /// is as well known from few samples as from all.
 Solution begin_on_few(const Problem& problem, const Samples& samples, const Weights& weights) {
-  if (samples.size() < 2 * thinned_samples)
+  const std::size_t enough = enough_to_begin(samples);
+  if (samples.size() < 2 * enough)
     return begin_on(problem, samples, weights, starts_of(problem, samples, weights));
-  const Samples few = thinned(samples, thinned_samples);
+  const Samples few = thinned(samples, enough);
   const Weights light = thinned_weights(samples, weights, few);
   return begin_on(problem, few, light, starts_of(problem, few, light));
 }
