@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <sstream>
+#include <string>
 
 #include "fracture/fracture_cells.h"
 #include "infinite.h"
@@ -149,7 +151,7 @@ Span span_over(const std::vector<RowChoice>& choices, const Coordinates& coordin
                const Eigen::Matrix3d& covariance, Index k, bool by_rows) {
   Span span;
   for (const RowChoice& choice : choices) {
-    double middle[] = {choice.at[k], choice.at[k]};
+    double middle[] = {0.0, 0.0};
     double half = 0.0;
     for (const bool up : {false, true}) {
       Eigen::VectorXd end = choice.at;
@@ -158,7 +160,7 @@ Span span_over(const std::vector<RowChoice>& choices, const Coordinates& coordin
         end[Coordinates::depth] =
             std::log(up ? std::max(to, choice.sides.depth_to) : std::min(from, choice.sides.depth_from));
       const Eigen::Vector3d gradient = gradient_of(coordinates, end, k);
-      if (by_rows) middle[up ? 1 : 0] = std::log(coordinates.values(end)[static_cast<std::size_t>(k)]);
+      middle[up ? 1 : 0] = std::log(coordinates.values(end)[static_cast<std::size_t>(k)]);
       if (std::isfinite(end[Coordinates::depth]))
         half = std::max(half, choice.left * std::sqrt(gradient.dot(covariance * gradient)));
     }
@@ -254,16 +256,30 @@ class EventLimits {
   const Coordinates& coordinates_;
 };
 
+/// Of the parameter that differs most.
 std::string warning_of(const Problem& problem, const std::vector<double>& best,
                        const std::vector<std::vector<double>>& others) {
-  constexpr std::size_t exponent = 1;
-  std::ostringstream text;
-  text.precision(3);
-  text << "other choices of the samples that break explain the force as well: '"
-       << problem.parameters[exponent].name << "' may be";
-  for (std::size_t i = 0; i < others.size(); ++i) text << (i == 0 ? " " : ", ") << others[i][exponent];
-  text << " instead of " << best[exponent] << "; the intervals hold them all";
-  return text.str();
+  std::size_t most = 0;
+  double farthest = 0.0;
+  for (const std::vector<double>& other : others) {
+    for (std::size_t k = 0; k < Coordinates::count; ++k) {
+      const double distance = std::abs(std::log(other[k] / best[k]));
+      if (distance > farthest) most = k;
+      farthest = std::max(farthest, distance);
+    }
+  }
+  const auto written = [](double value) {
+    std::ostringstream text;
+    text.precision(3);
+    text << value;
+    return text.str();
+  };
+  std::set<std::string> may_be;
+  for (const std::vector<double>& other : others) may_be.insert(written(other[most]));
+  std::string text = "other choices of the samples that break explain the force as well: '" +
+                     std::string(problem.parameters[most].name) + "' may be";
+  for (const std::string& value : may_be) text += (value == *may_be.begin() ? " " : ", ") + value;
+  return text + " instead of " + written(best[most]) + "; the intervals hold them all";
 }
 
 }  // namespace
