@@ -56,7 +56,10 @@ class SessionRun {
     }
     asking_ = {};
     if (failure_) std::rethrow_exception(failure_);
-    if (!director_->over()) store_.note("quit", hold_.was_held() ? jumped : "by a signal");
+    if (!director_->over()) {
+      store_.note("quit", hold_.was_held() ? jumped : "by a signal");
+      subject_.show(stopped_view(store_.protocol()));
+    }
     note_counts();
     if (hold_.was_held() && options_.loop.warn) {
       options_.loop.warn(
@@ -166,9 +169,21 @@ class SessionRun {
 
 }  // namespace
 
+SubjectView stopped_view(const Protocol& protocol) {
+  return {.stage = SessionStage::finished,
+          .study = protocol.title,
+          .text = (*protocol.texts)("finished_for_now"),
+          .texts = protocol.texts};
+}
+
 SessionRunResult run_session(SessionStore& store, Subject& subject, const SessionRunOptions& options,
                              const std::atomic<bool>& stop) {
-  return SessionRun(store, subject, options).run(stop);
+  try {
+    return SessionRun(store, subject, options).run(stop);
+  } catch (...) {
+    subject.show(stopped_view(store.protocol()));
+    throw;
+  }
 }
 
 }  // namespace kerf::bench

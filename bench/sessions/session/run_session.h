@@ -35,9 +35,13 @@ struct SessionRunResult {
   RunResult run;
 };
 
+/// The last screen of a session that ends ahead of its time: stopped by whoever runs it, or without its
+/// device.
+[[nodiscard]] SubjectView stopped_view(const Protocol& protocol);
+
 /// Runs a session on a device until it is finished, left or `stop` is set. By the wall clock the subject is
 /// asked by a thread of its own, every 5 ms; in virtual time in every tick. The loop records nothing itself:
-/// what it would write tells the laws apart.
+/// what it would write tells the laws apart. However it ends, the subject is shown that it has.
 /// @throws drivers::DeviceError (answers so far are kept, and the session can be gone on with),
 ///         std::invalid_argument, std::system_error.
 [[nodiscard]] SessionRunResult run_session(SessionStore& store, Subject& subject,

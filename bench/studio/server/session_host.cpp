@@ -190,6 +190,8 @@ void SessionHost::run(Running& running) {
   } catch (const std::exception& error) {
     ended = error.what();
   }
+  // One that ended in its check has shown nothing yet.
+  if (const auto page = this->page(); !page->stage()) page->show(stopped_view(running.store_.protocol()));
   const std::lock_guard lock(mutex_);
   progress_.running = false;
   progress_.ended = ended;

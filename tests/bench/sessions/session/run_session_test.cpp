@@ -259,6 +259,34 @@ TEST(RunSession, EndsForNowWhereThePositionJumpsAndCountsNoTrialWithoutAForce) {
   EXPECT_EQ(session.read().trials().size(), 4U);
 }
 
+TEST(RunSession, ShowsTheSubjectThatItWasStoppedWhoeverStoppedIt) {
+  test::BlindRun session(abx(), 5);
+  const auto last_view = [&](const std::string& fault, bool stopped) {
+    RehearsalSubject inner(7);
+    test::ScriptedSubject subject([&](const SubjectView& view) {
+      inner.show(view);
+      return inner.next();
+    });
+    SessionRunOptions options;
+    options.loop.device_uri = "sim:scissors" + fault;
+    options.loop.virtual_time = true;
+    const std::atomic<bool> stop = stopped;
+    SessionStore running = session.store(SessionStore::Purpose::run);
+    try {
+      EXPECT_EQ(run_session(running, subject, options, stop).end, SessionEnd::quit);
+    } catch (const drivers::DeviceError&) {
+      EXPECT_THAT(fault, HasSubstr("unplug"));
+    }
+    return subject.view();
+  };
+  for (const SubjectView& last :
+       {last_view("", true), last_view("?fault=jump@3:20mm", false), last_view("?fault=unplug@5s", false)}) {
+    EXPECT_EQ(last.stage, SessionStage::finished);
+    EXPECT_EQ(text_below(last), "The session stops here for now. Thank you.");
+    EXPECT_FALSE(last.may_answer || last.may_switch || last.may_go_on);
+  }
+}
+
 TEST(RunSession, RefusesAnAnswerOutOfTurnInWords) {
   test::BlindRun session(abx());
   std::vector<std::string> notices;
