@@ -34,11 +34,21 @@ Json columns_as_json(const TextLayout& layout) {
   return list;
 }
 
-/// To choose from, by channel; "own" of a channel of one's own.
+/// To choose from, by channel; "own" of a channel of one's own. Of a force in space with its frame, of an
+/// orientation how it is written.
 Json units_as_json() {
   Json units = Json::object();
-  for (const char* const channel : {"time", "position", "velocity", "force", "force_commanded", "own"})
+  for (const char* const channel :
+       {"time", "position", "velocity", "force", "force_commanded", "own", "position.x"})
     units[channel] = usual_units_of(channel);
+  for (const char* const channel : {"force.x", "torque.x"}) {
+    for (const char* const frame : {"sensor", "world"}) {
+      for (const std::string& unit : usual_units_of(channel)) units[channel].push_back(unit + ' ' + frame);
+    }
+  }
+  units["orientation"] = {"quaternion xyzw", "quaternion wxyz", "rotvec rad",
+                          "rotvec deg",      "euler xyz deg",   "euler XYZ deg",
+                          "euler ZYX deg",   "matrix rows",     "matrix columns"};
   return units;
 }
 

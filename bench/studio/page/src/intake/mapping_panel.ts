@@ -146,7 +146,8 @@ export class MappingPanel {
     this.verdict.className = this.fits ? "verdict" : "verdict wrong";
     const part = preview.is_whole ? "" : "of the first million bytes ";
     const rows = `${preview.rows.toLocaleString("en-GB")} rows ${part}over ${(preview.seconds ?? 0).toPrecision(4)} s`;
-    this.verdict.textContent = problem || `It fits: ${rows}.`;
+    const none = "Nothing would come in: no line has a number in each column that is chosen.";
+    this.verdict.textContent = problem || (this.fits ? `It fits: ${rows}.` : none);
     const said = [...preview.notes, ...preview.warnings];
     this.warnings.hidden = said.length === 0;
     this.warnings.replaceChildren(

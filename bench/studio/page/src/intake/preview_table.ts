@@ -1,6 +1,17 @@
 import type { LineKind, Preview, PreviewColumn, PreviewLine } from "../api/intake";
 import { element, select, setOptions } from "../ui/dom";
-import { choicesOf, isPlain, mapOf, ownChannel, usualChannels, type Choice } from "./mapping";
+import {
+  choicesOf,
+  columnsOfForm,
+  isContinued,
+  isPlain,
+  mapOf,
+  ownChannel,
+  siblingsOf,
+  spatialChannels,
+  usualChannels,
+  type Choice,
+} from "./mapping";
 import { UnitField } from "./unit_field";
 
 const words: Record<LineKind, string> = {
@@ -12,6 +23,8 @@ const words: Record<LineKind, string> = {
   misplaced: "left out: its time repeats or goes back",
   empty: "empty",
 };
+
+const usualForm = "quaternion xyzw";
 
 /** The first lines of a file, with what each column becomes above it, and what is left out marked at its line. */
 export class PreviewTable {
@@ -31,13 +44,16 @@ export class PreviewTable {
     if (columns !== this.columns) this.build(preview);
     this.columns = columns;
     this.choices = choicesOf(preview, map);
-    const plain = isPlain(map);
+    const plain = isPlain(preview, map);
     this.choices.forEach((choice, k) => {
       const [channel, unit] = [this.channels[k]!, this.units[k]!];
+      const isPart = isContinued(choice.channel);
       offer(channel, choice.channel);
-      channel.disabled = !plain;
-      unit.show(choice.unit, preview.units[choice.channel] ?? preview.units.own ?? [], !plain);
-      unit.root.hidden = choice.channel === "" || preview.columns[k]!.stamps;
+      channel.disabled = !plain || isPart;
+      // Of y and z as of x.
+      const units = preview.units[choice.channel.replace(/\.[yz]$/, ".x")] ?? preview.units.own ?? [];
+      unit.show(choice.unit, units, { disabled: !plain, needsFrame: /^(force|torque)\./.test(choice.channel) });
+      unit.root.hidden = choice.channel === "" || isPart || preview.columns[k]!.stamps;
     });
     const width = preview.columns.length;
     this.body.replaceChildren(...preview.lines.map((line) => row(line, width, this.choices)));
@@ -72,10 +88,7 @@ export class PreviewTable {
     const channel = select([], "", (value) => this.choose(k, value, column));
     channel.setAttribute("aria-label", `What column ${column.number}, ${name}, becomes`);
     channel.className = "channel";
-    const unit = new UnitField(column, (text) => {
-      this.choices[k]!.unit = text;
-      this.changed(mapOf(this.choices));
-    });
+    const unit = new UnitField(column, (text) => this.chooseUnit(k, text));
     this.channels[k] = channel;
     this.units[k] = unit;
     const said = column.stamps ? "time stamps" : column.unit ? `[${column.unit}]` : "no unit in the file";
@@ -90,14 +103,44 @@ export class PreviewTable {
   }
 
   private choose(k: number, value: string, column: PreviewColumn): void {
-    for (const [other, choice] of this.choices.entries()) {
+    const { choices } = this;
+    for (const [other, choice] of choices.entries()) {
       if (other !== k && choice.channel === value && value !== "own") choice.channel = ""; // a channel is one column's
     }
-    const taken = [...usualChannels, ...this.choices.map((it) => it.channel)];
+    const taken = [...usualChannels, ...spatialChannels, ...choices.map((it) => it.channel)];
     const channel = value === "own" ? ownChannel(column.name, column.number, taken) : value;
     const unit = value === "own" && !column.unit ? "1" : "";
-    this.choices[k] = { channel, unit };
+    choices[k] = { channel, unit: value === "orientation" ? usualForm : unit };
+    if (value.endsWith(".x")) {
+      // y and z stand beside x most often.
+      const siblings = siblingsOf(value);
+      const isFree = (at: number): boolean => choices[at]?.channel === "";
+      const isNamed = (it: string): boolean => choices.some(({ channel }) => channel === it);
+      if (siblings.every((it, i) => isFree(k + 1 + i) && !isNamed(it)))
+        siblings.forEach((it, i) => (choices[k + 1 + i] = { channel: it, unit: "" }));
+    }
+    this.takeOrientation();
+    this.changed(mapOf(choices));
+  }
+
+  private chooseUnit(k: number, unit: string): void {
+    const { channel, unit: before } = this.choices[k]!;
+    const siblings = siblingsOf(channel);
+    for (const choice of this.choices)
+      if (siblings.includes(choice.channel) && choice.unit === before) choice.unit = unit; // as one, until told apart
+    this.choices[k]!.unit = unit;
+    this.takeOrientation();
     this.changed(mapOf(this.choices));
+  }
+
+  /** An orientation has as many columns as its form. */
+  private takeOrientation(): void {
+    const { choices } = this;
+    for (const choice of choices) if (isContinued(choice.channel)) choice.channel = "";
+    const first = choices.findIndex((it) => it.channel === "orientation");
+    if (first < 0) return;
+    const last = Math.min(first + columnsOfForm(choices[first]!.unit), choices.length);
+    for (let k = first + 1; k < last; ++k) choices[k] = { channel: `orientation.${k - first + 1}`, unit: "" };
   }
 
   private irregular(preview: Preview): HTMLElement[] {
@@ -136,9 +179,13 @@ function row(line: PreviewLine, width: number, choices: readonly Choice[]): HTML
 
 /** The usual channels, and the one that is chosen. */
 function offer(node: HTMLSelectElement, chosen: string): void {
-  const usual = ["", ...usualChannels, "own"];
+  const usual = ["", ...usualChannels, "own", ...spatialChannels];
   const values = usual.includes(chosen) ? usual : [...usual, chosen];
-  const texts: Record<string, string> = { "": "– left out –", own: "a channel of its own" };
+  const texts: Record<string, string> = {
+    "": "– left out –",
+    own: "a channel of its own",
+    orientation: "orientation, from here",
+  };
   setOptions(
     node,
     values.map((it) => ({ value: it, text: texts[it] ?? it })),

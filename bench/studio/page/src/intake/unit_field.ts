@@ -38,12 +38,17 @@ export class UnitField {
   }
 
   /** The unit that is chosen (empty: the file's), and those to choose from; what somebody types stays theirs. */
-  show(unit: string, units: readonly string[], disabled: boolean): void {
+  show(unit: string, units: readonly string[], { disabled = false, needsFrame = false } = {}): void {
     this.list.disabled = this.text.disabled = disabled;
     if (document.activeElement === this.text) return;
-    const values = ["", ...units, ...(unit === "" || units.includes(unit) ? [] : [unit]), another];
+    const own = needsFrame && this.column.unit ? ["", "sensor", "world"] : [""];
+    const offered = [...own, ...units];
+    const values = [...offered, ...(offered.includes(unit) ? [] : [unit]), another];
+    const asInFile = `${this.column.unit}, as the file says`;
     const words: Record<string, string> = {
-      "": this.column.unit ? `${this.column.unit}, as the file says` : "– unit –",
+      "": needsFrame ? "– unit and frame –" : this.column.unit ? asInFile : "– unit –",
+      sensor: `${asInFile}, sensor`,
+      world: `${asInFile}, world`,
       [another]: "another …",
     };
     setOptions(

@@ -118,6 +118,48 @@ export const tests = {
     expectNoComplaints(page);
   },
 
+  async PicksTheAxesOfAToolInSpace({ browser, studio }) {
+    const page = await prepare({ browser, studio });
+    const lines = ["t,x,y,z,qx,qy,qz,qw,fx,fy,fz,mx,my,mz"];
+    for (let i = 0; i < 400; ++i) {
+      const turn = i / 400;
+      const place = [Math.sin(6 * turn), Math.cos(6 * turn), turn].map((it) => (10 * it).toFixed(4));
+      const orientation = [0, 0, Math.sin(turn / 2), Math.cos(turn / 2)].map((it) => it.toFixed(9));
+      lines.push([i / 1000, ...place, ...orientation, "0.5", "0", "1.5", "0.01", "0", "0"].join(","));
+    }
+    const file = await source(studio, "pose.csv", `${lines.join("\n")}\n`);
+    await choose(page, file);
+    await until("it is looked at", async () => (await page.locator(".preview thead th").count()) === 16);
+    for (let k = 2; k <= 14; ++k) await page.selectOption(channelOf(k), "");
+    await choosesUnit(page, 1, "time", "s");
+    await choosesUnit(page, 2, "position.x", "mm");
+    await choosesUnit(page, 5, "orientation", "quaternion xyzw");
+    await page.selectOption(channelOf(9), "force.x");
+    await until("the frame is asked for", async () => (await page.textContent(".verdict")).includes("sensor"));
+    await choosesUnit(page, 9, "force.x", "N sensor");
+    await choosesUnit(page, 12, "torque.x", "Nm sensor");
+    await fits(page);
+    const map =
+      "time=1[s],position=2:4[mm],orientation=5:8[quaternion xyzw],force=9:11[N sensor],torque=12:14[Nm sensor]";
+    expectEqual(await page.inputValue("input.map"), map, "the map, with y and z beside x");
+    expectEqual(
+      [await page.inputValue(channelOf(4)), await page.inputValue(unitOf(11)), await page.inputValue(channelOf(7))],
+      ["position.z", "N sensor", "orientation.3"],
+      "what stands above the columns",
+    );
+    await page.selectOption(unitOf(5), "euler xyz deg");
+    await until("three columns are enough now", async () => (await page.inputValue(channelOf(8))) === "");
+    await page.selectOption(unitOf(5), "quaternion xyzw");
+    await page.fill(".file_naming input", "pose");
+    await importAll(page);
+    studio.kerfOrThrow("import", file, "--map", map, "-o", "by_verb.h5");
+    const [here, there] = ["pose.h5", "by_verb.h5"].map((it) =>
+      JSON.parse(studio.kerfOrThrow("info", it, "--json").stdout),
+    );
+    expectEqual(here.channels, there.channels, "channels as the program's");
+    expectNoComplaints(page);
+  },
+
   async TakesTheColumnThatCountsOnForTheTime({ browser, studio }) {
     const page = await prepare({ browser, studio });
     const numbers = press()
