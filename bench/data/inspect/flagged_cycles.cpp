@@ -13,6 +13,7 @@
 #include "recordings/axis_values.h"
 #include "recordings/contact_rows.h"
 #include "recordings/provenance.h"
+#include "segment/segment.h"
 
 namespace kerf::bench {
 namespace {
@@ -102,6 +103,31 @@ std::vector<CycleVerdict> verdicts_on_cycles(const schema::RecordedRows& rows, d
   for (const FlaggedCycle& cycle : flagged_cycles(rows, *about.cycles, felt))
     verdicts.push_back({.cycle = cycle.facts.number, .reason = reasons_of(cycle)});
   return verdicts;
+}
+
+CycleMeans means_of_good_cycles(const schema::Cycles& cycles, const std::vector<bool>& is_good) {
+  const std::size_t all = cycles.closing.size();
+  const auto good = static_cast<std::size_t>(std::ranges::count(is_good, true));
+  if (is_good.size() != all || cycles.opening.size() != all || good == 0 || good == all)
+    return {.closing = cycles.closing_mean, .opening = cycles.opening_mean, .cycles = all};
+  std::vector<std::vector<double>> closing;
+  std::vector<std::vector<double>> opening;
+  for (std::size_t i = 0; i < all; ++i) {
+    if (!is_good[i]) continue;
+    closing.push_back(cycles.closing[i]);
+    opening.push_back(cycles.opening[i]);
+  }
+  return {.closing = mean_branch(closing, cycles.grid.size()),
+          .opening = mean_branch(opening, cycles.grid.size()),
+          .cycles = good};
+}
+
+CycleMeans means_of_good_cycles(const schema::Recording& about, const schema::Cycles& cycles) {
+  std::vector<bool> is_good;
+  if (about.cycles && about.cycle_flags && about.cycles->axis == cycles.axis) {
+    for (const CycleVerdict& verdict : as_stored(about)) is_good.push_back(verdict.reason.empty());
+  }
+  return means_of_good_cycles(cycles, is_good);
 }
 
 }  // namespace kerf::bench

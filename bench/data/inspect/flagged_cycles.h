@@ -30,4 +30,15 @@ struct CycleVerdict {
 };
 [[nodiscard]] std::vector<CycleVerdict> verdicts_on_cycles(const schema::RecordedRows& rows, double felt);
 
+/// Means of the branches of cycles that are good; of all where none is.
+struct CycleMeans {
+  std::vector<double> closing;
+  std::vector<double> opening;
+  std::size_t cycles = 0;  ///< of which these are the means
+};
+/// `is_good` as many as there are cycles, in their order; any other number: all are.
+[[nodiscard]] CycleMeans means_of_good_cycles(const schema::Cycles& cycles, const std::vector<bool>& is_good);
+/// As a recording says which are good; all where it does not, or of cycles along another axis.
+[[nodiscard]] CycleMeans means_of_good_cycles(const schema::Recording& about, const schema::Cycles& cycles);
+
 }  // namespace kerf::bench

@@ -14,6 +14,7 @@
 
 #include "files/json_number.h"
 #include "http/routes.h"
+#include "inspect/flagged_cycles.h"
 #include "recordings/axis_values.h"
 #include "recordings/provenance.h"
 #include "views/hysteresis_loops.h"
@@ -256,9 +257,12 @@ Json cycle_view(RecordingView& recording, const std::filesystem::path& path, con
   json["contact_position"] = json_number(cycles.contact_position);
   json["phases"] = phases_as_json(file, cycles);
   json["cycles"] = cycles_as_json(edited.flagged);
+  std::vector<bool> is_good;
+  for (const FlaggedCycle& cycle : edited.flagged) is_good.push_back(cycle.is_good());
+  const CycleMeans means = means_of_good_cycles(cycles, is_good);
   json["average"] = {{"position", numbers(cycles.grid)},
-                     {"closing", numbers(cycles.closing_mean)},
-                     {"opening", numbers(cycles.opening_mean)}};
+                     {"closing", numbers(means.closing)},
+                     {"opening", numbers(means.opening)}};
   if (question.loop > 0) json["loop"] = loop_as_json(recording, cycles, question.loop);
   return json;
 }

@@ -6,6 +6,7 @@
 
 #include "editor/segment_editor.h"
 #include "fits/fit_recording.h"
+#include "inspect/flagged_cycles.h"
 #include "laws/render.h"
 #include "recordings/axis_series.h"
 #include "segment/segment.h"
@@ -30,15 +31,16 @@ EditorCurve editor_curve(const schema::Recording& recording, std::size_t axis) {
   const bool has_cycles = recording.cycles && recording.cycles->axis == axis;
   const schema::Cycles cycles = has_cycles ? *recording.cycles : find_cycles(recording, {.axis = axis});
   const schema::Axis& about = recording.axes[axis];
+  CycleMeans means = means_of_good_cycles(recording, cycles);
   EditorCurve curve{.axis = about.name,
                     .position_unit = about.position_unit,
                     .force_unit = about.force_unit,
-                    .cycles = cycles.closing.size(),
+                    .cycles = means.cycles,
                     .segmented_here = !has_cycles,
                     .contact = contact_with(recording, axis, cycles),
                     .penetration = {},
-                    .closing = cycles.closing_mean,
-                    .opening = cycles.opening_mean,
+                    .closing = std::move(means.closing),
+                    .opening = std::move(means.opening),
                     .jnd = fitting::jnd_of(about.force_unit, about.lever)};
   const double direction = curve.contact.direction;
   for (const double position : cycles.grid) {

@@ -6,9 +6,11 @@
 #include <optional>
 #include <span>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/core.h>
 
+#include "inspect/flagged_cycles.h"
 #include "laws/render.h"
 #include "plot/plot.h"
 #include "recordings/axis_values.h"
@@ -54,10 +56,13 @@ void add_phases(const schema::Cycles& found, std::uint64_t rows, AxisCycles& cyc
   for (const auto& [number, span] : by_number) cycles.cycles.push_back(span);
 }
 
-void add_averages(const schema::Cycles& found, bool is_measured, AxisCycles& cycles) {
+void add_averages(const schema::Recording& about, const schema::Cycles& found, bool is_measured,
+                  AxisCycles& cycles) {
+  CycleMeans means = means_of_good_cycles(about, found);
   cycles.grid = found.grid;
-  cycles.closing = found.closing_mean;
-  cycles.opening = found.opening_mean;
+  cycles.closing = std::move(means.closing);
+  cycles.opening = std::move(means.opening);
+  cycles.averaged = means.cycles;
   for (auto* branch : {&cycles.closing, &cycles.opening}) {
     for (double& force : *branch) force = resisting(force, is_measured, cycles.contact);
   }
@@ -109,7 +114,7 @@ AxisCycles axis_cycles(const schema::RecordingFile& file, std::size_t axis) {
   cycles.contact = contact_along(file, axis, found);
   add_phases(*found, file.rows(), cycles);
   if (cycles.cycles.empty()) cycles.why_none = "its cycles hold no rows";
-  if (found->axis == axis) add_averages(*found, is_measured(file), cycles);
+  if (found->axis == axis) add_averages(about, *found, is_measured(file), cycles);
   return cycles;
 }
 

@@ -20,7 +20,8 @@ struct AxisCycles {
   };
   std::vector<Rows> cycles;
   bool segmented_here = false;
-  std::string why_none;  ///< empty if there are cycles
+  std::string why_none;      ///< empty if there are cycles
+  std::size_t averaged = 0;  ///< cycles that are in the averages: those that are not left out
   // The averages of the branches on a grid of positions; empty along another axis than the segmented one.
   std::vector<double> grid;
   std::vector<double> closing;

@@ -152,6 +152,7 @@ std::string loops_json(RecordingView& recording, std::size_t axis, std::size_t f
                              {"position_unit", about.position_unit},
                              {"force_unit", about.force_unit},
                              {"cycles_in_all", cycles.cycles.size()},
+                             {"averaged", cycles.averaged},
                              {"segmented_here", cycles.segmented_here},
                              {"reason", cycles.why_none}});
   text.pop_back();  // the closing brace

@@ -11,6 +11,7 @@
 
 #include "bench/data/inspect/closings.h"
 #include "import/import.h"
+#include "inspect/flagged_cycles.h"
 #include "inspect/inspection.h"
 #include "segment/segment.h"
 #include "support/measured_data.h"
@@ -193,6 +194,43 @@ TEST(CycleFlags, OfPunchesFindTheToolThatWasPutDown) {
           << name << " " << number;
     }
   }
+}
+
+schema::Recording of_three_cycles() {
+  schema::Recording recording;
+  schema::Cycles& cycles = recording.cycles.emplace();
+  cycles.grid = {0.0, 1.0};
+  cycles.closing = {{1.0, 2.0}, {3.0, 4.0}, {20.0, 30.0}};
+  cycles.opening = {{0.0, 1.0}, {2.0, 3.0}, {10.0, 10.0}};
+  cycles.closing_mean = {8.0, 12.0};
+  cycles.opening_mean = {4.0, 14.0 / 3.0};
+  for (std::uint32_t cycle = 1; cycle <= 3; ++cycle)
+    cycles.phases.push_back(
+        {.cycle = cycle, .phase = schema::Phase::closing, .begin = cycle, .end = cycle + 1});
+  return recording;
+}
+
+TEST(CycleMeans, AreOfTheCyclesThatAreNotLeftOut) {
+  schema::Recording recording = of_three_cycles();
+  EXPECT_EQ(means_of_good_cycles(recording, *recording.cycles).closing, recording.cycles->closing_mean)
+      << "nobody said of one that it is not good";
+  recording.cycle_flags.emplace();
+  recording.cycle_flags->flags.push_back({.cycle = 3, .fault = "by_hand", .reason = "it slipped"});
+  const CycleMeans means = means_of_good_cycles(recording, *recording.cycles);
+  EXPECT_EQ(means.cycles, 2U);
+  EXPECT_EQ(means.closing, (std::vector{2.0, 3.0}));
+  EXPECT_EQ(means.opening, (std::vector{1.0, 2.0}));
+  recording.cycle_flags->flags.push_back({.cycle = 3, .fault = "accepted", .reason = "it did not"});
+  EXPECT_EQ(means_of_good_cycles(recording, *recording.cycles).cycles, 3U);
+  for (std::uint32_t cycle = 1; cycle <= 2; ++cycle)
+    recording.cycle_flags->flags.push_back({.cycle = cycle, .fault = "by_hand", .reason = "another tool"});
+  recording.cycle_flags->flags[1].cycle = 1;  // which is accepted, and so the only one
+  EXPECT_EQ(means_of_good_cycles(recording, *recording.cycles).closing, (std::vector{1.0, 2.0}));
+}
+
+TEST(CycleMeans, AreOfAllCyclesWhereNoneIsGood) {
+  const schema::Recording recording = of_three_cycles();
+  EXPECT_EQ(means_of_good_cycles(*recording.cycles, {false, false, false}).cycles, 3U);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // What is around every page: the address that holds what is seen, tabs, the list at the left, commands and keys, and how much
 // of the window is left to the data.
 
-import { copyFile, mkdir, readFile, rm, utimes } from "node:fs/promises";
+import { copyFile, mkdir, readFile, rename, rm, utimes } from "node:fs/promises";
 import { join } from "node:path";
 
 import { audit } from "./accessibility.mjs";
@@ -166,17 +166,27 @@ export const tests = {
     for (const key of ["ArrowDown", "ArrowDown", "ArrowDown", "Enter"]) await page.keyboard.press(key);
     await until("the third line is open", async () => (await page.textContent("h1")) === "third.h5");
     await page.waitForSelector('.list_row[aria-current=page]:has-text("third")');
+    const says = (words) => until(words, async () => (await page.textContent("#notice")) === `third.h5 ${words}`);
     studio.kerfOrThrow("segment", "third.h5", "--corner", "15");
-    await until("the page says that it has changed", async () =>
-      (await page.textContent("#notice")).startsWith("third.h5 has changed in the folder"),
-    );
+    await says("has changed in the folder, and was read anew.");
+    await page.click("#notice_close");
+    await utimes(join(studio.folder, "third.h5"), 1e9, 1e9); // as what is written after the clock was set back
+    await says("has changed in the folder, and was read anew.");
+    await page.keyboard.press("3"); // Cycles, where somebody may be at work
+    await page.waitForSelector("#tab_cycles[aria-selected=true]");
+    await utimes(join(studio.folder, "third.h5"), 1.1e9, 1.1e9);
+    await says("has changed in the folder: press R to read it anew.");
     await page.keyboard.press("r");
     await until("it is read anew", () => page.locator("#notice_strip").isHidden());
-    await utimes(join(studio.folder, "third.h5"), 1e9, 1e9); // as what is written after the clock was set back
-    await until("an earlier time is a change too", async () =>
-      (await page.textContent("#notice")).startsWith("third.h5 has changed in the folder"),
-    );
-    await rm(join(studio.folder, "third.h5"));
+    await page.keyboard.press("2");
+    await page.waitForSelector("#tab_loop[aria-selected=true]");
+    const file = join(studio.folder, "third.h5");
+    await rename(file, `${file}.away`);
+    await says("is not in the folder any more, or cannot be read: what is shown was read before.");
+    await rename(`${file}.away`, file);
+    await until("one that is back is read, and nothing is said", () => page.locator("#notice_strip").isHidden());
+    await page.waitForSelector(".tab_loop svg, .tab_loop canvas");
+    await rm(file);
     await until("one that is gone leaves the list", async () => !(await rows(page)).includes("third"));
     await until("the page says so", async () =>
       (await page.textContent("#notice")).startsWith("third.h5 is not in the folder any more"),

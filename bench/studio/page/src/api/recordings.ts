@@ -58,6 +58,7 @@ export interface Loops {
   position_unit: string;
   force_unit: string;
   cycles_in_all: number;
+  averaged: number; // of them in the averages: those that are not left out
   segmented_here: boolean;
   reason?: string; // why there are no cycles
   loops: { cycle: number; position: number[]; force: (number | null)[] }[];

@@ -1,7 +1,7 @@
 import type { CycleView, JudgedCycle, Remark } from "../api/cycles";
 import { kindsOf } from "../recordings/cycle_flags";
 import { button, element } from "../ui/dom";
-import { plain } from "../ui/numbers";
+import { counted, plain } from "../ui/numbers";
 import { spanOf, type Draft } from "./cycle_draft";
 
 const mostCycles = 500;
@@ -56,7 +56,7 @@ export class CycleTable {
     const cycles = view?.cycles ?? [];
     const bad = cycles.filter((it) => !it.good).length;
     this.head.textContent =
-      cycles.length === 0 ? "No cycles" : `${cycles.length} cycles, ${bad === 0 ? "none" : bad} left out`;
+      cycles.length === 0 ? "No cycles" : `${counted(cycles.length, "cycle")}, ${bad === 0 ? "none" : bad} left out`;
     const shown = cycles.slice(0, mostCycles);
     const now = JSON.stringify([shown, draft?.said, locked, draft?.phases.length]);
     if (now !== this.drawn && draft) {

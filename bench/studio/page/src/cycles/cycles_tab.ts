@@ -85,7 +85,7 @@ export class CyclesTab {
     this.observer = new ResizeObserver(() => this.handles.place());
     this.observer.observe(plots);
     plots.addEventListener("click", () => (this.splits ? this.splitAtCursor() : this.chooseAtCursor()));
-    this.takeKeys(root);
+    this.takeKeys();
     this.time.show([{ recording: about, name: recording.name, shift_s: 0 }], tracesOf(about));
     this.follow();
     state.onChange(() => this.follow());
@@ -134,20 +134,22 @@ export class CyclesTab {
     void this.look();
   }
 
-  private takeKeys(root: HTMLElement): void {
+  private takeKeys(): void {
     this.context.offer(
       { title: "Undo", group: "Cycles", run: () => this.desk.undo() },
       { title: "Redo", group: "Cycles", run: () => this.desk.redo() },
       { title: "Split the cycle at the cursor", group: "Cycles", keys: "s", run: () => this.splitAtCursor() },
       { title: "Merge the cycle with the next", group: "Cycles", keys: "m", run: () => void this.desk.merge() },
     );
-    root.addEventListener("keydown", (event) => {
+    // After a reload nothing has the focus.
+    const key = (event: KeyboardEvent): void => {
       if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z") return;
-      if (event.target instanceof HTMLInputElement && event.target.type === "text") return; // it undoes its own
+      if (event.target instanceof HTMLInputElement && ["text", "search"].includes(event.target.type)) return; // it undoes its own
       event.preventDefault();
       if (event.shiftKey) this.desk.redo();
       else this.desk.undo();
-    });
+    };
+    addEventListener("keydown", key, { signal: this.context.signal });
   }
 
   /** What the address says. */

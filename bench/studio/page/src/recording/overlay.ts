@@ -1,4 +1,5 @@
 import type { Recording } from "../api/recordings";
+import { whyNotOver } from "../recordings/laid_over";
 import { RecordingOverlay } from "../recordings/recording_overlay";
 import type { Drawn } from "../recordings/recording_time";
 import { Latest } from "../ui/latest";
@@ -77,6 +78,8 @@ export class Overlay {
     try {
       const recording = this.known.get(id) ?? (await this.context.api.get<Recording>("/api/recording", { id }));
       this.known.set(id, recording);
+      const why = whyNotOver(this.recording.about, recording);
+      if (why) this.context.say(`${name} cannot be laid over it: ${why}.`);
       return { recording, name };
     } catch (error) {
       if (this.ids.includes(id)) this.context.complain(error);

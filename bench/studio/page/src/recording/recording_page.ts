@@ -13,7 +13,7 @@ export class RecordingPage {
   private readonly strip: TabStrip;
   private readonly panel = element("div", { class: "tab_panel", role: "tabpanel", id: "tab_panel" });
   private recording: OpenRecording | null = null;
-  private said = ""; // of the file that has changed
+  private found: "" | "changed" | "gone" = ""; // of the file, since it was read
   private writers = 0; // of the file, within this page
   private end: () => void = () => {};
 
@@ -69,8 +69,8 @@ export class RecordingPage {
         writing: () => this.beginWriting(),
         reload: () => void this.open(),
       };
-      if (this.said) this.context.say("");
-      this.said = "";
+      if (this.found) this.context.say("");
+      this.found = "";
       const file = name.lastIndexOf("/") + 1;
       this.head.replaceChildren(
         element("span", { class: "head_folder" }, name.slice(0, file)),
@@ -117,19 +117,32 @@ export class RecordingPage {
     }
   }
 
-  /** With what is in the folder now: the page shows what was read, and says so when that is not what is there. */
+  /** With what is in the folder now: what has changed is read anew, unless somebody is at work on what is shown. */
   private compare(workspace: Workspace): void {
     if (!this.recording || this.writers > 0) return;
     const { id, name, workspace: read } = this.recording;
     const then = read.recordings.find((it) => it.id === id);
     const now = workspace.recordings.find((it) => it.id === id);
-    const said = !now
-      ? `${name} is not in the folder any more: what is shown was read before.`
-      : !now.partial && then && (now.modified !== then.modified || now.bytes !== then.bytes)
-        ? `${name} has changed in the folder: press R to read it anew.`
-        : "";
-    if (said && said !== this.said) this.context.say(said);
-    this.said = said;
+    const isOther = now && !now.partial && then && (now.modified !== then.modified || now.bytes !== then.bytes);
+    const found = !now ? "gone" : isOther ? "changed" : "";
+    if (found === this.found) return;
+    const wasGone = this.found === "gone";
+    this.found = found;
+    if (found === "gone")
+      this.context.say(`${name} is not in the folder any more, or cannot be read: what is shown was read before.`);
+    else if (this.isAtWork() && found === "changed")
+      this.context.say(`${name} has changed in the folder: press R to read it anew.`);
+    else
+      void this.open().then(() =>
+        this.context.say(wasGone ? "" : `${name} has changed in the folder, and was read anew.`),
+      );
+  }
+
+  /** Somebody draws, mends or types, and would lose their place. */
+  private isAtWork(): boolean {
+    const types =
+      this.panel.contains(document.activeElement) && document.activeElement?.matches("input, select, textarea");
+    return types === true || this.tab === "cycles" || this.tab === "law";
   }
 
   /** Begins the tab of the address; what is there of the one before ends. */

@@ -1,6 +1,6 @@
 import type { InspectedCycle, InspectedSignal, Inspection, RecordingInspection } from "../api/recordings";
 import { button, element, numberCell } from "../ui/dom";
-import { plain, withUnit } from "../ui/numbers";
+import { counted, plain, withUnit } from "../ui/numbers";
 import { tableMenu } from "../ui/plot/out/export_menu";
 
 const mostCycles = 300;
@@ -35,7 +35,7 @@ export class InspectionPanel {
     const more = cycles.list.length > mostCycles ? `; the first ${mostCycles}` : "";
     return tableOf(
       "cycles",
-      `${cycles.list.length} cycles, ${found}; good: ${cycles.good || "none"}${more}`,
+      `${counted(cycles.list.length, "cycle")}, ${found}; good: ${cycles.good || "none"}${more}`,
       [
         ...["Cycle", "Begin [s]", "Wait [s]", "Closing [s]", "Hold [s]", "Opening [s]"],
         ...[`Peak [${cycles.force_unit}]`, `Work [${cycles.work_unit}]`, "Flags"],

@@ -3,10 +3,12 @@ import "./loops.css";
 import type { Loops, Recording } from "../api/recordings";
 import { button, element, labelled, select, setOptions } from "../ui/dom";
 import { figureOf, type Figure } from "../ui/figure_description";
+import { counted } from "../ui/numbers";
 import { limitsOf } from "../ui/plot/frame";
 import { Plot } from "../ui/plot/plot";
 import { scaledFor } from "../ui/plot/scaled";
 import { rangeAround } from "../ui/plot/scale";
+import { axisOver } from "./laid_over";
 import { loopCurves, orderInWords, type Kind } from "./loop_curves";
 import { namedOnce } from "./trace_groups";
 import { stateKeys } from "../recording/keys";
@@ -149,8 +151,7 @@ export class RecordingLoops {
 
   private fetch(recording: Recording, first: number, count: number, signal: AbortSignal): Promise<Loops | null> {
     const own = this.drawn[0]?.recording;
-    const name = own?.axes[Number(this.axis.value)]?.name;
-    const axis = recording.axes.findIndex((it) => it.name === name);
+    const axis = own ? axisOver(own, Number(this.axis.value), recording) : -1;
     if (axis < 0) return Promise.resolve(null);
     const wanted = { id: recording.id, axis, first: first + 1, count }; // cycles are counted from 1
     const answer = this.context.api.get<Loops>("/api/recording/loops", wanted, signal);
@@ -217,7 +218,12 @@ function inWords(loops: Loops, kind: Kind, first: number): string {
   if (loops.whole) return `${loops.reason || "No cycles found."} All rows are drawn, decimated by their extremes.`;
   const found = loops.segmented_here ? ", found for this view" : "";
   if (all === 0) return loops.reason || "No cycles found.";
-  if (kind === "average") return `Average of ${all} cycles${found}`;
+  if (kind === "average") {
+    const { averaged } = loops;
+    const some =
+      averaged > 0 && averaged < all ? `${averaged} of ${counted(all, "cycle")}: the others are left out` : "";
+    return `Average of ${some || counted(all, "cycle")}${found}`;
+  }
   if (kind === "one") return `Cycle ${loops.loops[0]?.cycle ?? first + 1} of ${all}${found}`;
   return `Cycles ${first + 1} to ${first + loops.loops.length} of ${all}${found}`;
 }

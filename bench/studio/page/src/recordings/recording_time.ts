@@ -7,6 +7,7 @@ import type { Span, TimeMarks } from "../ui/time/time_marks";
 import type { TimeLine } from "../ui/time/time_line";
 import { TimeStack, type PlotOrder } from "../ui/time/time_stack";
 import { clippedMarks, cycleMarks, cyclesOf } from "./cycle_flags";
+import { traceOver } from "./laid_over";
 import { emptyLine, inWords, plotsOf, takeView } from "./trace_groups";
 
 /** A recording that is drawn: the page's own first, then those laid over it. */
@@ -91,9 +92,8 @@ export class RecordingTime {
 
   private source(drawn: Drawn, traces: readonly Trace[], look: number): Source {
     const { recording, shift_s } = drawn;
-    const indices = traces.map((trace) =>
-      recording.traces.findIndex((it) => it.name === trace.name && it.unit === trace.unit),
-    );
+    const own = this.first ?? recording;
+    const indices = traces.map((trace) => traceOver(own, trace, recording));
     const lines = traces.map((trace) => ({ ...emptyLine(trace, look), shift_s }));
     const asked = indices.filter((it) => it >= 0);
     const fetch = (from: number, to: number, columns: number, signal: AbortSignal) =>

@@ -36,7 +36,7 @@ function candidateTable(of: readonly ChoiceCandidate[], unit: string, ifTaken: s
       "free",
       ["held out as rendered", `held-out error as rendered [${unit}]`],
       ["JND", "held-out error [JND]"],
-      ["tick", "tick [us]"],
+      ["tick", "tick [µs]"],
       "stable",
       "why passed over",
     ],
@@ -49,6 +49,10 @@ function candidateTable(of: readonly ChoiceCandidate[], unit: string, ifTaken: s
     tableMenu(all, "candidates"),
   );
 }
+
+const whyOthersDiffer =
+  "A fit names the simplest law by its held-out error alone. A choice tries more variants, and asks that the law is stable and in " +
+  "time. A chart's fronts begin with the cheapest tick. So the three may name different laws.";
 
 /** A choice in words: what was taken, why, and what was passed over. */
 export class ChoicePanel {
@@ -113,6 +117,7 @@ export class ChoicePanel {
       ),
       candidateTable(of.candidates, unit, doubt(of) || "taken"),
       ...of.warnings.map((it) => element("p", { class: "quiet" }, it)),
+      element("p", { class: "quiet" }, whyOthersDiffer),
     );
   }
 }

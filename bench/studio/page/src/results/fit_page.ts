@@ -3,7 +3,7 @@ import type { Workspace, WorkspaceFile, WorkspaceLaw } from "../api/workspace";
 import { stateKeys } from "../recording/keys";
 import { element, labelled, select } from "../ui/dom";
 import { Latest } from "../ui/latest";
-import { plain } from "../ui/numbers";
+import { counted, plain } from "../ui/numbers";
 import { Plot } from "../ui/plot/plot";
 import type { Context } from "../ui/view";
 import { FitTable, entanglements, parameterTable } from "./fit_table";
@@ -76,7 +76,7 @@ export class FitPage {
       ),
       blamed ? element("p", {}, element("strong", {}, "What is to blame: "), `${blamed}.`) : null,
       list("Warnings", fit.warnings, "warnings"),
-      list(`${refused.length} laws could not be fitted`, refused),
+      list(`${counted(refused.length, "law")} could not be fitted`, refused),
       this.detail,
     );
     const errors = this.errors.figure("Errors, fitted and held out");

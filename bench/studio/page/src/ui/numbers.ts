@@ -86,3 +86,8 @@ export function logarithmicTicks(lower: number, upper: number, count = Infinity)
   }
   return found.length >= 3 ? found : linearTicks(lower, upper, Math.min(count, 6));
 }
+
+/** "1 cycle", "2 cycles". */
+export function counted(count: number, noun: string): string {
+  return `${count} ${noun}${count === 1 ? "" : "s"}`;
+}

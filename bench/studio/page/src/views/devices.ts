@@ -30,11 +30,12 @@ export const devices: View = {
       }
       if (id) context.say("That device is not in this folder any more.");
       root.append(
-        resultList(
-          "Devices in this folder",
-          "devices",
-          files,
-          "There is none yet: kerf identify URI -o FOLDER measures one.",
+        resultList("Devices in this folder", "devices", files, "There is none yet."),
+        element(
+          "p",
+          {},
+          element("a", { href: "#/work/identify" }, "Identify a simulated device"),
+          ": one that moves a hand is measured at a terminal, by kerf identify.",
         ),
       );
     };

@@ -34,10 +34,12 @@ export function errorPlaces(recording: string, of: Residuals): HTMLElement | nul
       ` (${much})${k + 1 < of.places.length ? "," : "."}`,
     );
   });
+  const together = of.places.reduce((sum, it) => sum + it.share, 0);
+  const spread = "It is spread over the recording; the largest shares are in";
   return element(
     "ul",
     { class: "places", "aria-label": "Where the error lies" },
-    element("li", {}, "It lies in"),
+    element("li", {}, together < 0.5 ? spread : "It lies in"),
     ...links,
   );
 }

@@ -20,6 +20,8 @@ export interface Frame {
   y: Scale;
 }
 
+const mostRows = 4; // of names below an axis
+
 export interface FrameOptions {
   left?: number; // at least, so that plots above each other align
   timeAxis?: boolean; // texts and label below it; else another plot has them
@@ -65,14 +67,35 @@ export function frameOf(
   { left = 0, timeAxis = true }: FrameOptions = {},
 ): Frame {
   const top = 0.5 * style.text + style.gap;
-  const bottom = height - (timeAxis ? 2.4 * style.text + 3 * style.gap : 0.5 * style.text);
-  const y = new Scale(limits.y, bottom, top, figure.log_y);
-  const widest = Math.max(0, ...ticksOf(figure, y, "y", style).map((it) => widthOf(it.text, style.text, style.font)));
-  const lines = wrapped(figure.y_label, bottom - top + style.text, style).length;
-  const begin = Math.max(left, (0.1 + 1.15 * lines) * style.text + widest + 3 * style.gap);
-  const end = width - roomAtRight(style);
-  const x = new Scale(limits.x, begin, Math.max(begin + 1, end), figure.log_x);
-  return { width, height, left: begin, right: Math.max(begin + 1, end), top, bottom, x, y };
+  const withRows = (rows: number): Frame => {
+    const below = (2.4 + rowHeight * (rows - 1)) * style.text + 3 * style.gap;
+    const bottom = height - (timeAxis ? below : 0.5 * style.text);
+    const y = new Scale(limits.y, bottom, top, figure.log_y);
+    const widest = Math.max(0, ...ticksOf(figure, y, "y", style).map((it) => widthOf(it.text, style.text, style.font)));
+    const lines = wrapped(figure.y_label, bottom - top + style.text, style).length;
+    const begin = Math.max(left, (0.1 + 1.15 * lines) * style.text + widest + 3 * style.gap);
+    const end = width - roomAtRight(style);
+    const x = new Scale(limits.x, begin, Math.max(begin + 1, end), figure.log_x);
+    return { width, height, left: begin, right: Math.max(begin + 1, end), top, bottom, x, y };
+  };
+  const frame = withRows(1);
+  const rows = timeAxis && figure.x_ticks ? rowsOf(ticksOf(figure, frame.x, "x", style), frame.x, style) : 1;
+  return rows > 1 ? withRows(rows) : frame;
+}
+
+const rowHeight = 1.15; // of a text
+
+/** In how many rows names stand below an axis, by turns, so that none runs into another. */
+function rowsOf(ticks: readonly Tick[], x: Scale, { text, font }: Style): number {
+  const widths = ticks.map((it) => widthOf(it.text, text, font));
+  for (let rows = 1; rows < mostRows; ++rows) {
+    const isFree = ticks.every((it, i) => {
+      const next = ticks[i + rows];
+      return !next || x.at(next.at) - x.at(it.at) > 0.5 * (widths[i]! + widths[i + rows]!) + 0.3 * text;
+    });
+    if (isFree) return rows;
+  }
+  return mostRows;
 }
 
 /** A label in as many lines as it needs in a room so wide. */
@@ -95,9 +118,12 @@ export function axesOf(figure: Figure, frame: Frame, style: Style, timeAxis = tr
   const tick = (text: string, at_x: number, at_y: number, anchor: "middle" | "end"): Shape => {
     return { kind: "text", class: "tick", text, x: at_x, y: at_y, size, colour, anchor };
   };
-  for (const { at, text } of ticksOf(figure, x, "x", style)) {
+  const below = ticksOf(figure, x, "x", style);
+  const rows = figure.x_ticks ? rowsOf(below, x, style) : 1;
+  for (const [i, { at, text }] of below.entries()) {
     grid.push(`M${px(x.at(at))} ${px(top)}V${px(bottom)}`);
-    if (timeAxis) texts.push(tick(text, x.at(at), bottom + size + style.gap, "middle"));
+    const lower = rowHeight * (i % rows);
+    if (timeAxis) texts.push(tick(text, x.at(at), bottom + (1 + lower) * size + style.gap, "middle"));
   }
   for (const { at, text } of ticksOf(figure, y, "y", style)) {
     grid.push(`M${px(left)} ${px(y.at(at))}H${px(right)}`);
