@@ -308,6 +308,12 @@ Protocol parse_protocol(const std::string& text, const std::string& name,
   return protocol;
 }
 
+std::string text_named_by_protocol(const fs::path& file) {
+  if (is_plugin(file.string())) return to_toml(law_of_plugin(file));
+  if (file.extension() != ".h5") return read_named_file(file);
+  return to_toml(table_of(schema::read_recording(file), file.string()).file);
+}
+
 Protocol read_protocol(const fs::path& file) {
   const fs::path folder = file.parent_path();
   const auto existing = [&](const fs::path& named) {
@@ -316,12 +322,7 @@ Protocol read_protocol(const fs::path& file) {
       throw std::invalid_argument(fmt::format("there is no file {}", found.string()));
     return found;
   };
-  const auto text_of = [&](const std::string& named) {
-    const fs::path found = existing(named);
-    if (is_plugin(found.string())) return to_toml(law_of_plugin(found));
-    if (found.extension() != ".h5") return read_named_file(found);
-    return to_toml(table_of(schema::read_recording(found), found.string()).file);
-  };
+  const auto text_of = [&](const std::string& named) { return text_named_by_protocol(existing(named)); };
   Protocol protocol = parse_protocol(read_named_file(file), file.string(), text_of);
   if (protocol.motion && !protocol.motion->scene.empty()) {
     try {

@@ -222,6 +222,11 @@ struct Protocol {
 /// with its standard or itself.
 [[nodiscard]] std::vector<std::array<std::size_t, 2>> pairs_of(const Protocol& protocol, std::size_t tissue);
 
+/// The text of a file that a protocol names: as it stands, or the law that is made of a recording or a
+/// plugin.
+/// @throws std::invalid_argument, std::system_error.
+[[nodiscard]] std::string text_named_by_protocol(const std::filesystem::path& file);
+
 /// Reads a protocol and the laws that it names, relative to its folder.
 /// @throws std::invalid_argument with file, line, found and expected; std::system_error.
 [[nodiscard]] Protocol read_protocol(const std::filesystem::path& file);

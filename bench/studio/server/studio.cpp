@@ -14,6 +14,7 @@
 #include "live/live_loop.h"
 #include "live/live_routes.h"
 #include "pages/access_control.h"
+#include "protocols/protocol_routes.h"
 #include "results/result_routes.h"
 #include "scene/scene.h"
 #include "server/session_host.h"
@@ -72,6 +73,7 @@ class Studio::State {
                      .check = options.check_words});
     add_study_routes(routes_, workspace_);
     add_sweep_routes(routes_, workspace_, options.swept);
+    add_protocol_routes(routes_, workspace_);
     add_session_routes(routes_, workspace_, sessions_,
                        {.key_file = options.key_file,
                         .uri_of = [this](const std::string& uri) { return uri_of(uri); },

@@ -100,6 +100,94 @@ export const tests = {
     expectNoComplaints(page);
   },
 
+  async "a protocol is written by a form, tried as it is written, changed by hand, and a session made of it"({
+    browser,
+    studio,
+    screenshots,
+  }) {
+    await writeFile(join(studio.folder, "soft.law.toml"), await law(6));
+    await writeFile(join(studio.folder, "hard.law.toml"), await law(12));
+    studio.kerfOrThrow("session", "key", "keeper.key");
+    await studio.serve("--key-file", join(studio.folder, "keeper.key"));
+    const page = await openPage(browser);
+    await page.goto(studio.page("sessions"));
+    await page.getByRole("link", { name: "Write a protocol" }).click();
+    const verdict = page.locator(".protocol .verdict");
+    await page.getByLabel("hard.law.toml").check();
+    await until("what is missing is said", async () => /sample/.test(await verdict.textContent()));
+    await page.getByLabel("soft.law.toml").check();
+    await page.getByLabel("Trials", { exact: true }).fill("8");
+    await page.getByLabel("Rehearsals move from [deg]").fill("32");
+    await page.getByLabel("to [deg]", { exact: true }).fill("8");
+    await until("it can be run", async () => /^It can be run: 12 trials/.test(await verdict.textContent()));
+    const save = page.getByRole("button", { name: "Save" });
+    expect(await save.isDisabled(), "without a name it is not saved");
+    await page.getByLabel("Name of the file").fill("soft-or-hard");
+    await until("it can be saved", () => save.isEnabled());
+    for (const colorScheme of ["light", "dark"]) {
+      await page.emulateMedia({ colorScheme });
+      expectEqual(await audit(page), [], `what of a new protocol is not accessible, ${colorScheme}`);
+      await page.getByRole("heading", { name: "A new protocol" }).scrollIntoViewIfNeeded();
+      await page.screenshot({ path: join(screenshots, `protocol-${colorScheme}.png`), fullPage: true });
+    }
+    await page.reload();
+    await page.getByText("This is as it was left, and is not saved").waitFor();
+    await until("it can be saved after a reload", () => save.isEnabled());
+    await save.click();
+    await page.getByText("soft-or-hard.protocol.toml is saved").waitFor();
+
+    // By hand, where the form has no field for it.
+    await page.getByRole("link", { name: "Change soft-or-hard.protocol.toml" }).click();
+    const text = page.getByLabel("The protocol as text");
+    await until("its text is there", async () => (await text.inputValue()).includes('design = "abx"'));
+    await text.fill(`${await text.inputValue()}\n[catch]\nevery = "seven"\n`);
+    await until("the line that is wrong is named", async () => /protocol\.toml:\d+:/.test(await verdict.textContent()));
+    expect(await save.isDisabled(), "what is wrong is not saved");
+    await text.fill((await text.inputValue()).replace(/\n\[catch\][^]*$/, "").replace("trials = 8", "trials = 4"));
+    await until("it can be run again", async () => /^It can be run: 8 trials/.test(await verdict.textContent()));
+    await save.click();
+    await page.getByRole("link", { name: "Make a session soft-or-hard.protocol.toml" }).click();
+    await page.locator(".verb_page").getByLabel("output").fill("S01");
+    await page.locator(".verb_page details > summary").first().click();
+    await page.locator(".verb_page").getByLabel("subject", { exact: true }).fill("S01");
+    await page.getByRole("button", { name: "Run" }).click();
+    await page.locator(".job_page", { hasText: "done" }).waitFor();
+    expectEqual(
+      JSON.parse(studio.kerfOrThrow("info", "S01.h5", "--json").stdout).subject,
+      "S01",
+      "whose session it is",
+    );
+    expectNoComplaints(page);
+  },
+
+  async "each design of the form is one that the program takes"({ browser, studio }) {
+    for (const [name, stiffness] of Object.entries({ soft: 6, hard: 12, harder: 20 }))
+      await writeFile(join(studio.folder, `${name}.law.toml`), await law(stiffness));
+    await studio.serve();
+    const page = await openPage(browser);
+    await page.goto(studio.page("protocol"));
+    const verdict = page.locator(".protocol .verdict");
+    const design = page.getByLabel("What a trial asks");
+    const names = await design.locator("option").evaluateAll((all) => all.map((it) => it.value));
+    expectEqual(names.length, 11, "designs");
+    await page.getByLabel("Rehearsals move from [mm]").fill("32");
+    await page.getByLabel("to [mm]", { exact: true }).fill("8");
+    for (const name of names) {
+      await design.selectOption(name);
+      for (const box of await page.locator(".protocol_laws input").all()) await box.uncheck();
+      const one = ["constant", "staircase", "quest", "magnitude"].includes(name);
+      for (const law of one ? ["soft"] : ["soft", "hard"])
+        await page.getByLabel(`${law}.law.toml`, { exact: true }).check();
+      await until(`${name} can be run`, async () => {
+        const said = await verdict.textContent();
+        return said.startsWith("It can be run") && (await page.inputValue(".protocol_text")).includes(`"${name}"`);
+      }).catch(async (error) => {
+        throw new Error(`${error.message}: ${await verdict.textContent()}`);
+      });
+    }
+    expectNoComplaints(page);
+  },
+
   async "without a key nothing is offered that needs one, and without a protocol what to do first"({
     browser,
     studio,
@@ -107,12 +195,12 @@ export const tests = {
     await studio.serve();
     const page = await openPage(browser);
     await page.goto(studio.page("sessions"));
-    await page.getByText("An experiment begins with a file NAME.protocol.toml").waitFor();
+    await page.getByText("An experiment begins with a protocol").waitFor();
     await writeFile(join(studio.folder, "abx.protocol.toml"), protocol);
     await page.reload();
     await page.getByRole("link", { name: "Rehearse abx.protocol.toml" }).waitFor();
     expectEqual(await page.getByRole("link", { name: /Make a session/ }).count(), 0, "ways to make one without a key");
-    await page.getByText("where the studio was started with --key-file").waitFor();
+    await page.getByText("start the studio with --key-file").waitFor();
     expectNoComplaints(page);
   },
 
@@ -231,6 +319,25 @@ export const tests = {
     await page.goto(studio.page("sessions"));
     await page.getByRole("button", { name: "Stop the session" }).click();
     await page.getByText("it can be continued").waitFor();
+  },
+
+  async "a subject is told that the session was stopped, and that it ended before it began"({ browser, studio }) {
+    await prepare(studio);
+    const session = await studio.id("sessions", "S01.h5");
+    const ends = async (device, stops) => {
+      const { json } = await studio.api("/api/session/start", { session, check: !stops, device });
+      const subject = await openPage(browser);
+      await subject.goto(json.subject_url);
+      if (stops) {
+        await until("it is welcome", async () => (await subject.textContent("#heading")) === "Welcome");
+        await studio.api("/api/session/stop", {});
+      }
+      await until("it has ended", async () => (await subject.textContent("#heading")) === "Finished");
+      expectEqual(await subject.textContent("#text"), "The session stops here for now. Thank you.", "what is said");
+      expectEqual(await subject.textContent("#connection"), "", "what is said of the connection");
+    };
+    await ends("sim:scissors", true);
+    await ends("sim:scissors?fault=unplug@0.1", false); // while its laws are tried on the device
   },
 
   async "a device that a session loses is told on every page, until another begins"({ browser, studio }) {

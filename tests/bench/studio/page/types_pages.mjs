@@ -70,6 +70,10 @@ function routesOf(it) {
     ["GET /api/sweep", "Sweep", { id: sweep }],
     ["POST /api/sweep/answer", "SweepAnswer", { id: sweep, ...ofWalls }],
     ["POST /api/sweep/sample", "SweepSample", { id: sweep, ...ofWalls, columns: ["mass"], most: 9 }],
+    ["GET /api/protocol", "ProtocolText", { id: it.protocol }],
+    ["POST /api/protocol/check", "ProtocolCheck", { text: it.protocolText }],
+    ["POST /api/protocol/check", "ProtocolCheck", { text: "name = 1" }],
+    ["POST /api/protocol", "{ id: string; name: string }", { name: "typed", text: it.protocolText }],
     ["GET /api/session", "SessionState", {}],
     ["POST /api/session/quality", "SessionLook", { session: it.session }],
     ["GET /api/live/status", "LoopStatus", {}],
@@ -182,6 +186,9 @@ async function prepare(studio) {
     async () => (await studio.api("/api/jobs")).json.find((it) => it.job === job && it.state === "done")?.file,
     120000,
   );
+  const sample = (name) => `[[sample]]\nname = "${name}"\nlaw = "cut.fit/${name}.law.toml"\n`;
+  const protocolText = `name = "typed"\ndesign = "abx"\ntrials = 4\n${sample("kelvin")}${sample("piecewise")}`;
+  await writeFile(join(studio.folder, "typed-before.protocol.toml"), protocolText);
   const { state } = (await studio.api("/api/workspace")).json;
   return {
     ...ids,
@@ -190,6 +197,8 @@ async function prepare(studio) {
     law: await studio.id("laws", "cut.fit/kelvin.law.toml"),
     piecewise: await studio.id("laws", "cut.fit/piecewise.law.toml"),
     session: await studio.id("sessions", "S01.h5"),
+    protocol: await studio.id("files", "typed-before.protocol.toml"),
+    protocolText,
   };
 }
 

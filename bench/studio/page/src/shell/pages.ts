@@ -2,6 +2,7 @@ import type { View } from "../ui/view";
 import { devices } from "../views/devices";
 import { editor } from "../views/editor";
 import { importView } from "../views/import";
+import { protocol } from "../views/protocol";
 import { recording } from "../views/recording";
 import { recordings } from "../views/recordings";
 import { chart, fits } from "../views/results";
@@ -25,12 +26,13 @@ export const pages: readonly View[] = [
   work,
 ];
 
-/** Reached by a link: a recording, and what addresses of earlier versions name. */
-export const hiddenPages: readonly View[] = [recording, editor, fits, chart];
+/** Reached by a link: a recording, a protocol, and what addresses of earlier versions name. */
+export const hiddenPages: readonly View[] = [recording, protocol, editor, fits, chart];
 
 /** The page of the bar that such a one belongs to. */
 export const belongsTo: Readonly<Record<string, string>> = {
   recording: "recordings",
+  protocol: "sessions",
   editor: "recordings",
   fits: "recordings",
   chart: "recordings",

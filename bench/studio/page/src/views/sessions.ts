@@ -147,6 +147,10 @@ function startForm(
   );
 }
 
+const keyWords =
+  "Sessions are sealed: make a key where no subject reads it (kerf session key KEEPER.key), and start the studio with " +
+  "--key-file KEEPER.key to make and analyse them here.";
+
 /** What is done with an experiment before its sessions and after them: forms of Work, filled in. */
 function waysOf(workspace: Workspace, hasKeyFile: boolean): HTMLElement {
   const link = (verb: string, words: string, named: string, key: string): HTMLElement =>
@@ -157,21 +161,26 @@ function waysOf(workspace: Workspace, hasKeyFile: boolean): HTMLElement {
     );
   const protocols = workspace.files.filter((it) => it.kind === "protocol");
   const finished = workspace.sessions.filter((it) => it.finished);
+  const fresh = element("a", { href: "#/protocol" }, "Write a protocol");
   if (protocols.length === 0)
     return element(
       "p",
       {},
-      "An experiment begins with a file NAME.protocol.toml in this folder: what is compared, how and by how many. ",
-      element("a", { href: "#/work/session-plan" }, "Plan how many subjects it takes"),
+      "An experiment begins with a protocol: what is compared, how and by how many. ",
+      fresh,
+      hasKeyFile ? null : ` ${keyWords}`,
     );
   return element(
     "ul",
     { class: "ways", "aria-label": "Experiments" },
-    ...protocols.map(({ name }) =>
+    element("li", {}, fresh),
+    ...protocols.map(({ id, name }) =>
       element(
         "li",
         {},
         element("span", { class: "name" }, name),
+        element("a", { href: `#/protocol/${id}`, "aria-label": `Change ${name}` }, "Change"),
+        link("session-plan", "Plan", name, "protocol"),
         link("session-simulate", "Rehearse", name, "protocol"),
         hasKeyFile ? link("session-new", "Make a session", name, "protocol") : null,
       ),
@@ -184,13 +193,7 @@ function waysOf(workspace: Workspace, hasKeyFile: boolean): HTMLElement {
           element("a", { href: analysisOf(finished) }, "Analyse"),
         )
       : null,
-    hasKeyFile
-      ? null
-      : element(
-          "li",
-          { class: "quiet" },
-          "Sessions are made and analysed here where the studio was started with --key-file FILE.",
-        ),
+    hasKeyFile ? null : element("li", { class: "quiet" }, keyWords),
   );
 }
 
