@@ -2,6 +2,7 @@
 
 #include <array>
 #include <bit>
+#include <cmath>
 #include <limits>
 
 #include "spectrum.h"
@@ -52,20 +53,25 @@ class Shifted {
             .left = std::max(0.0, gg - sum_g * sum_g / count - gain * (eg - sum_e * sum_g / count))};
   }
 
-  /// Of the ticks, by the slope of the signal and what is left beside it.
-  [[nodiscard]] double std_error(const LagFit& fit) const {
+  /// Sum of squares of the slope of the signal, a tick.
+  [[nodiscard]] double slopes(const LagFit& fit) const {
     double slopes = 0.0;
-    std::vector<double> left;
-    left.reserve(rows_.size());
     const Delayed delayed(expected_, fit.ticks, fit.kernel);
     for (const std::size_t row : rows_) {
       const double slope = 0.5 * fit.gain * (delayed(row + 1) - delayed(row - 1));
       slopes += slope * slope;
-      left.push_back(got_[row] - fit.gain * delayed(row) - fit.offset);
     }
+    return slopes;
+  }
+
+  /// Mean square of what is left beside it, as of so many fewer rows as hang together.
+  [[nodiscard]] double variance(const LagFit& fit) const {
+    std::vector<double> left;
+    left.reserve(rows_.size());
+    const Delayed delayed(expected_, fit.ticks, fit.kernel);
+    for (const std::size_t row : rows_) left.push_back(got_[row] - fit.gain * delayed(row) - fit.offset);
     double square = 0.0;
     for (const double one : left) square += one * one;
-    if (!(slopes > 0.0)) return std::numeric_limits<double>::infinity();
     double together = 1.0;  // how many residuals say the same
     for (std::size_t apart = 1; apart < left.size() / 10 && square > 0.0; ++apart) {
       double product = 0.0;
@@ -73,7 +79,7 @@ class Shifted {
       if (product < 0.05 * square) break;
       together += 2.0 * product / square;
     }
-    return std::sqrt(together * square / static_cast<double>(left.size()) / slopes);
+    return together * square / static_cast<double>(left.size());
   }
 
  private:
@@ -82,6 +88,29 @@ class Shifted {
   bool free_gain_;
   std::vector<std::size_t> rows_;
 };
+
+/// A Gaussian of six ticks over a signal: between smoothed rows there is nearly as much noise as at them.
+std::vector<double> smoothed(std::span<const double> values) {
+  constexpr double width = 6.0;
+  constexpr long reach = 20;
+  std::array<double, 2 * reach + 1> weights{};
+  for (long k = -reach; k <= reach; ++k)
+    weights.at(static_cast<std::size_t>(k + reach)) =
+        std::exp(-0.5 * static_cast<double>(k * k) / (width * width));
+  std::vector<double> smooth(values.size());
+  const auto count = static_cast<long>(values.size());
+  for (long i = 0; i < count; ++i) {
+    double sum = 0.0;
+    double weight = 0.0;
+    for (long k = std::max(-reach, -i); k <= std::min(reach, count - 1 - i); ++k) {
+      const double w = weights.at(static_cast<std::size_t>(k + reach));
+      sum += w * values[static_cast<std::size_t>(i + k)];
+      weight += w;
+    }
+    smooth[static_cast<std::size_t>(i)] = sum / weight;
+  }
+  return smooth;
+}
 
 std::vector<double> changes_of(std::span<const double> values) {
   std::vector<double> changes(values.size(), 0.0);
@@ -130,6 +159,25 @@ long best_shift(std::span<const double> expected, std::span<const double> got, s
   return best;
 }
 
+/// The least difference within a tick of a whole shift, by the kernel that leaves least.
+struct FineLag {
+  LagFit fit;
+  double left = std::numeric_limits<double>::infinity();
+};
+FineLag fine_lag(const Shifted& shifted, long whole) {
+  FineLag best;
+  for (const Kernel kernel : kernels) {
+    const double middle = static_cast<double>(whole);
+    const auto left = [&](double ticks) { return shifted.line(ticks, kernel).left; };
+    const double ticks = least_within(left, middle - 1.0, middle + 1.0);
+    const Line line = shifted.line(ticks, kernel);
+    if (line.left >= best.left) continue;
+    best = {.fit = {.ticks = ticks, .gain = line.gain, .offset = line.offset, .kernel = kernel},
+            .left = line.left};
+  }
+  return best;
+}
+
 }  // namespace
 
 std::vector<std::size_t> rows_for_all(std::size_t begin, std::size_t end) {
@@ -152,6 +200,7 @@ std::vector<std::size_t> rows_for_all(std::size_t begin, std::size_t end) {
 
 std::optional<LagFit> fit_lag(std::span<const double> expected, std::span<const double> got,
                               const LagFitOptions& options) {
+  constexpr double explained = 0.1;  // of what a whole shift leaves; where more is left, it is noise
   LagFitOptions used = options;
   const std::size_t rows = expected.size();
   if (rows < 4 * (kernel_reach + 4)) return {};
@@ -181,19 +230,22 @@ std::optional<LagFit> fit_lag(std::span<const double> expected, std::span<const 
       whole += step;
     }
   }
-  LagFit best;
-  least = std::numeric_limits<double>::infinity();
-  for (const Kernel kernel : kernels) {
-    const double middle = static_cast<double>(whole);
-    const auto left = [&](double ticks) { return shifted.line(ticks, kernel).left; };
-    const double ticks = least_within(left, middle - 1.0, middle + 1.0);
-    const Line line = shifted.line(ticks, kernel);
-    if (line.left >= least) continue;
-    least = line.left;
-    best = {.ticks = ticks, .gain = line.gain, .offset = line.offset, .kernel = kernel};
+  const FineLag raw = fine_lag(shifted, whole);
+  LagFit best = raw.fit;
+  double variance = shifted.variance(best);
+  double slopes = shifted.slopes(best);
+  if (raw.left > explained * least) {
+    // Half way between two rows their noise averages out, which would pass for a better fit.
+    const std::vector<double> smooth_e = smoothed(expected);
+    const std::vector<double> smooth_g = smoothed(got);
+    const Shifted calm(smooth_e, smooth_g, used);
+    best = fine_lag(calm, whole).fit;
+    slopes = calm.slopes(best);  // those of the noise are none of the signal's
+    best.kernel = Kernel::sinc;  // which keeps the noise as it is
+    variance = shifted.variance(best);
   }
-  best.std_error = shifted.std_error(best);
-  if (!std::isfinite(best.std_error)) return {};
+  if (!(slopes > 0.0)) return {};
+  best.std_error = std::sqrt(variance / slopes);
   return best;
 }
 

@@ -109,5 +109,28 @@ TEST(Agreement, FindsGainOffsetLatencyAndCoherence) {
   EXPECT_LT(channel.coherence[5].coherence, 0.3) << "noise alone";
 }
 
+// Between two rows a straight line averages their noise: half a tick of lag would look like a better fit.
+TEST(Agreement, FindsNoLatencyInTheNoiseOfTwoSensors) {
+  int beyond = 0;
+  double sum = 0.0;
+  constexpr int pairs = 40;
+  for (unsigned pair = 0; pair < pairs; ++pair) {
+    Series expected = timed(0.0, 2e-3, 4000, 0.0, wave);
+    Series got = timed(0.0, 2e-3, 4000, 0.0, wave);
+    const auto one = test::noise(4000, 0.02, 2 * pair + 1);
+    const auto other = test::noise(4000, 0.02, 2 * pair + 2);
+    for (std::size_t i = 0; i < one.size(); ++i) {
+      expected.channels[0].value[i] += one[i];
+      got.channels[0].value[i] += other[i];
+    }
+    const ChannelAgreement channel = agreement(expected, got).at(0);
+    const double errors = channel.latency_s.value() / channel.latency_std_error_s;
+    sum += errors;
+    beyond += std::abs(errors) > 2.0 ? 1 : 0;
+  }
+  EXPECT_LE(beyond, 7) << "of 40, of which 2 are expected";
+  EXPECT_LT(std::abs(sum) / pairs, 0.6) << "nor a lag on the whole";
+}
+
 }  // namespace
 }  // namespace kerf::compare

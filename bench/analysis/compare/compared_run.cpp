@@ -57,6 +57,7 @@ ComparedRun from_recording(const fs::path& file, const ComparedForce& which) {
                                      .unit = about.position_unit + "/s",
                                      .value = column_of(recording.velocity, axis, axes)});
   }
+  run.sense = commanded ? ForceSense::commanded : ForceSense::measured;
   if (!commanded && !which.measured) run.notes.push_back(fmt::format("{}: the measured force", run.name));
   return run;
 }
@@ -184,6 +185,19 @@ ComparedRun read_run(const fs::path& file, const ComparedForce& force) {
   }
   compare::require_sound(run.series, run.name);
   return run;
+}
+
+void bring_to_one_sense(ComparedRun& expected, ComparedRun& got) {
+  if (expected.sense == ForceSense::unknown || got.sense == ForceSense::unknown ||
+      expected.sense == got.sense)
+    return;
+  ComparedRun& turned = expected.sense == ForceSense::commanded ? expected : got;
+  for (compare::Channel& channel : turned.series.channels) {
+    for (double& value : channel.value) value = -value;
+  }
+  turned.notes.push_back(fmt::format(
+      "{}: the commanded force, which acts on the hand, beside one that was measured: its sign is turned",
+      turned.name));
 }
 
 }  // namespace kerf::bench

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -8,11 +9,15 @@
 
 namespace kerf::bench {
 
+/// What a recording says of its force: a sensor's resists the tool, a commanded one acts on the hand.
+enum class ForceSense : std::uint8_t { unknown, measured, commanded };
+
 /// A run to be compared, and what is to be known of how it was read.
 struct ComparedRun {
   std::string name;
   compare::Series series;
   std::vector<std::string> notes;
+  ForceSense sense = ForceSense::unknown;
 };
 
 /// Which force of a file.
@@ -29,5 +34,9 @@ struct ComparedForce {
 /// @throws std::invalid_argument for a file without a force or without that case, with a line that is no row,
 /// or as the readers do.
 [[nodiscard]] ComparedRun read_run(const std::filesystem::path& file, const ComparedForce& force);
+
+/// Where one force was measured and the other commanded, turns the commanded one to resist the tool too, with
+/// a note.
+void bring_to_one_sense(ComparedRun& expected, ComparedRun& got);
 
 }  // namespace kerf::bench

@@ -76,6 +76,7 @@ void run_compare(const CompareVerbArguments& arguments, Context& context) {
   for_each_index(2, 2, [&](std::size_t i) {
     runs[i] = read_run(i == 0 ? arguments.expected : arguments.got, arguments.force);
   });
+  bring_to_one_sense(runs[0], runs[1]);
   const RunComparison result = compare_runs(std::move(runs[0]), std::move(runs[1]), options);
   context.result = comparison_as_json(result, options);
   for (const std::string& one : result.notes) note(one);

@@ -63,6 +63,29 @@ class CompareProgram : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
+// A commanded force acts on the hand, a sensor's resists the tool.
+TEST_F(CompareProgram, BringsAMeasuredForceAndACommandedOneToOneSense) {
+  schema::Recording measured;
+  measured.header = schema::new_header("test");
+  measured.axes = {{.name = "x"}};
+  for (int i = 0; i < 2000; ++i) {
+    const double t = 1e-3 * i;
+    measured.time.push_back(t);
+    measured.tick.push_back(static_cast<std::uint64_t>(i));
+    measured.position.push_back(depth(t));
+    measured.velocity.push_back(0.044 * std::sin(4.4 * t));
+    measured.force_measured.push_back(force(t));
+  }
+  schema::write_recording(at("measured.h5"), measured);
+  const std::string commanded = recording("commanded.h5", [](double t) { return -force(t); });
+  for (const bool turned : {false, true}) {
+    const Outcome outcome = turned ? run_kerf({"compare", commanded, at("measured.h5")})
+                                   : run_kerf({"compare", at("measured.h5"), commanded});
+    EXPECT_EQ(outcome.exit_status, 0) << outcome.output;
+    EXPECT_THAT(outcome.errors, HasSubstr("commanded.h5: the commanded force, which acts on the hand"));
+  }
+}
+
 TEST_F(CompareProgram, TakesARecordingAndATableInOtherUnitsForTheSame) {
   const Outcome outcome =
       compare({recording("a.h5"), table("b.csv", "time [ms],x [mN],grip", 1000.0), "--absolute", "1e-12"});
