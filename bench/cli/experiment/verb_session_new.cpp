@@ -176,7 +176,7 @@ void add_session_key(CLI::App& session, Context& context) {
       "Keep it where neither subject nor experimenter reads it, and a copy of it: without the key no\n"
       "answer of a session can be read, by nobody.",
       [file, &context] {
-        require_output(*file, true);  // which a key that is there refuses itself
+        require_change(*file);  // which a key that is there refuses itself
         write_new_key_file(*file);
         context.result = {{"key_file", *file}};
         context.say(fmt::format("{}: 32 random bytes, readable by you alone", *file));

@@ -111,7 +111,7 @@ void run_inspect(const InspectVerbArguments& arguments, Context& context) {
   const schema::Axis& axis = rows.about().axes[options.axis];
   options.felt = arguments.felt.value_or(fitting::jnd_of(axis.force_unit, axis.lever).threshold);
   if (arguments.writes()) schema::require_no_stand_in(arguments.recording);
-  if (arguments.writes()) require_output(arguments.recording, true);
+  if (arguments.writes()) require_change(arguments.recording);
   Inspection inspection = inspect(rows, options);
   if (arguments.writes()) store(arguments, inspection, rows);
   context.result = inspection_as_json(inspection);

@@ -1,7 +1,12 @@
 #include "program/verb.h"
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
+#include <filesystem>
 #include <optional>
+#include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -9,6 +14,7 @@
 
 #include <kerf/drivers/bench_file.h>
 
+#include "files/whole_file.h"
 #include "laws/plugin_laws.h"
 #include "program/app.h"
 #include "program/import_on_the_way.h"
@@ -23,6 +29,19 @@ std::string wrong_with(const std::string& text, bool may_be_zero) {
   if (!CLI::detail::lexical_cast(text, value)) return "'" + text + "' is not a number";
   if (value > 0.0 || (may_be_zero && value == 0.0)) return "";
   return text + (may_be_zero ? " is negative" : " is not greater than 0");
+}
+
+/// Files that the command line names, but as an output or as what an earlier run has written.
+void protect_inputs(const CLI::App& verb) {
+  constexpr std::array<std::string_view, 5> outputs{"--output", "--record", "--junit", "--filter-chart",
+                                                    "--resume"};
+  for (const CLI::Option* const option : verb.get_options()) {
+    if (std::ranges::find(outputs, option->get_name()) != outputs.end()) continue;
+    for (const std::string& named : option->results()) {
+      std::error_code ignored;
+      if (std::filesystem::is_regular_file(named, ignored)) protect_input(named);
+    }
+  }
 }
 
 std::string is_named(const std::string& output) {
@@ -156,11 +175,12 @@ Verb add_verb(CLI::App& app, Context& context, const std::string& name, const st
   verb.add_flag("--json", context.json, "Print one JSON object on standard output and nothing else there");
   const CLI::Option* const seed =
       subcommand->add_option("--seed", context.seed, "Seed of every random choice")->capture_default_str();
-  subcommand->callback([&context, seed, before, run = std::move(action)] {
+  subcommand->callback([&context, subcommand, seed, before, run = std::move(action)] {
     context.seed_given = seed->count() > 0;
     if (!context.runs) return;
     for (const std::string& file : context.plugins) (void)load_plugin(file);
     say_plugin_notes();  // before a device moves
+    protect_inputs(*subcommand);
     for (const auto& first : *before) first();
     run();
     tell_imported_on_the_way(context);

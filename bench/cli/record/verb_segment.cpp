@@ -161,7 +161,7 @@ CycleEdit asked_edit(const SegmentVerbArguments& arguments, const schema::Record
 void run_edit(const SegmentVerbArguments& arguments, Context& context) {
   const std::string author = arguments.author.empty() ? usual_author() : arguments.author;
   check_author(author);
-  require_output(arguments.recording, true);
+  require_change(arguments.recording);
   const schema::RecordingFile rows(arguments.recording);
   const CycleEdit edit = asked_edit(arguments, rows);
   const schema::Axis& axis = rows.about().axes.at(rows.about().cycles->axis);

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include <fmt/core.h>
 #include <unistd.h>
@@ -40,6 +41,12 @@ class Leftovers {
   std::set<std::filesystem::path> folders_;
   std::vector<std::filesystem::path> removed_;
 };
+
+/// Of a program that runs one verb.
+std::vector<std::filesystem::path>& protected_inputs() {
+  static std::vector<std::filesystem::path> inputs;
+  return inputs;
+}
 
 }  // namespace
 
@@ -93,11 +100,23 @@ std::filesystem::path existing_folder_of(const std::filesystem::path& file) {
   return folder.empty() ? "." : folder;
 }
 
+void protect_input(const std::filesystem::path& file) { protected_inputs().push_back(file); }
+
 void require_output(const std::filesystem::path& file, bool replace) {
   if (file.empty()) throw std::invalid_argument("'' is no name for an output");
+  std::error_code absent;
+  for (const std::filesystem::path& input : protected_inputs()) {
+    if (std::filesystem::equivalent(input, file, absent))
+      throw std::invalid_argument(fmt::format(
+          "{}: the output would take the place of what is read for it; give another name", file.string()));
+  }
   if (!replace && std::filesystem::exists(file)) {
     throw std::invalid_argument(fmt::format("{} exists; --force replaces it", file.string()));
   }
+  require_change(file);
+}
+
+void require_change(const std::filesystem::path& file) {
   const std::filesystem::path folder = existing_folder_of(file);
   std::error_code ignored;
   const int reason = !std::filesystem::is_directory(folder, ignored) ? ENOTDIR

@@ -27,9 +27,17 @@ void write_whole_file(const std::filesystem::path& file, std::span<const std::st
 
 /// Asked before the work that ends in `file`, whose folder may yet have to be made.
 /// Removes what killed runs have left unfinished there.
-/// @throws std::invalid_argument if it has no name, or exists and `replace` is false, naming --force as the
-///         mend; std::system_error if nothing can be written where it is to stand.
+/// @throws std::invalid_argument if it has no name, or is one of the inputs that were protected, or exists
+/// and
+///         `replace` is false, naming --force as the mend; std::system_error if nothing can be written where
+///         it is to stand.
 void require_output(const std::filesystem::path& file, bool replace);
+
+/// The same of a file that is read to be changed.
+void require_change(const std::filesystem::path& file);
+
+/// From now on no output takes the place of this file, whatever may be replaced: it is read for the output.
+void protect_input(const std::filesystem::path& file);
 
 /// What require_output() has removed since this was last asked.
 [[nodiscard]] std::vector<std::filesystem::path> take_removed_leftovers();

@@ -130,7 +130,7 @@ class CycleDesk {
     const double felt = felt_along(file.about(), question.axis);
     const EditedCycles edited = edited_cycles(file, question.edit, felt);
     const schema::Recording about = with_edit(file, question.edit, edited, felt, author);
-    require_output(path, true);
+    require_change(path);
     std::error_code absent;
     const auto bytes = std::filesystem::file_size(path, absent);
     if (!absent) require_disk(path, bytes, "as many rows as there are");
