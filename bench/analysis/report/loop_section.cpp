@@ -107,13 +107,20 @@ std::string verdict_paragraph(const json& check) {
     const bool passed = check.at("verdict") == "pass";
     const bool passive = check.at("passive").get<bool>();
     std::string text =
-        fmt::format("<strong>Closed loop: {}.</strong> {} ticks at {:.0f} Hz, {} missed",
+        fmt::format("<strong>Closed loop: {}.</strong> {} ticks at {:.0f} Hz",
                     !passed   ? "FAIL"
                     : passive ? "pass"
                               : "in time, but not passive",
-                    check.at("ticks").get<std::uint64_t>(), 1.0 / check.at("period_s").get<double>(),
-                    check.at("missed").get<std::uint64_t>());
-    for (const json& reason : check.at("reasons")) text += "; " + escaped(reason.get<std::string>());
+                    check.at("ticks").get<std::uint64_t>(), 1.0 / check.at("period_s").get<double>());
+    bool says_missed = false;  // a reason does, with by what
+    std::string reasons;
+    for (const json& reason : check.at("reasons")) {
+      const auto words = reason.get<std::string>();
+      says_missed = says_missed || words.find("deadlines missed") != std::string::npos;
+      reasons += "; " + escaped(words);
+    }
+    if (!says_missed) text += fmt::format(", {} missed", check.at("missed").get<std::uint64_t>());
+    text += reasons;
     text += '.';
     return html_answer(!passed ? Answer::bad : passive ? Answer::good : Answer::partly, text);
   } catch (const json::exception& error) {
