@@ -10,7 +10,9 @@
 #include <fmt/core.h>
 
 #include "fits/fit_series.h"
+#include "signal/held_values.h"
 #include "signal/quantiles.h"
+#include "signal/row_noise.h"
 
 namespace kerf::bench {
 namespace {
@@ -133,6 +135,55 @@ std::string begins_elsewhere(const AxisSeries& series, const fitting::FitOptions
       100.0 * onset, mend);
 }
 
+/// A force that was sampled more slowly than it was written.
+std::string held_force(const AxisSeries& series) {
+  const auto held = rows_held(series.force);
+  if (!held || series.time_s.size() < 2) return "";
+  const double period_s =
+      (series.time_s.back() - series.time_s.front()) / static_cast<double>(series.time_s.size() - 1);
+  const double rate_hz = 1.0 / (static_cast<double>(*held) * period_s);
+  return fmt::format(
+      "the force changes only every {} rows: it was sampled at {:.4g} Hz and held, and laws are fitted to "
+      "its "
+      "steps as if they were the tissue's; take it at its own rate ('kerf import --resample {:.4g}')",
+      *held, rate_hz, rate_hz);
+}
+
+/// Single rows that say nothing of a tissue, and much of every error.
+std::string single_rows(const AxisSeries& series, const fitting::FitOptions& settings) {
+  constexpr double noteworthy = 0.5;  // of the JND
+  const auto counts = [&](std::size_t row) { return series.counts.empty() || series.counts[row] != 0; };
+  std::vector<double> sizes;
+  each_second_difference(series.force, counts, [&](double size) { sizes.push_back(size); });
+  if (sizes.empty()) return "";
+  const double noise = noise_of_second_differences(quantile(std::move(sizes), 0.5));
+  std::size_t found = 0;
+  std::size_t at = 0;
+  double highest = 0.0;
+  double squares = 0.0;
+  each_single_row(series.force, counts, noise, [&](std::size_t row, double height) {
+    ++found;
+    squares += height * height;
+    if (height > highest) at = row;
+    highest = std::max(highest, height);
+  });
+  double counted = 0.0;
+  double all_squares = 0.0;
+  for (std::size_t row = 0; row < series.force.size(); ++row) {
+    if (!counts(row)) continue;
+    counted += 1.0;
+    all_squares += series.force[row] * series.force[row];
+  }
+  if (2.0 * highest * highest > all_squares) return "";  // which no fit takes
+  const double error = std::sqrt(squares / counted);
+  if (!(error > noteworthy * settings.jnd.at(fitting::rms_of(fitted_view(series))))) return "";
+  return fmt::format(
+      "{} single rows stand out from both their neighbours, most of all at {:.6g} s by {:.3g} {}: they alone "
+      "make an error of {:.3g} {}; take them out of the file that was imported, or leave their cycles out "
+      "(--cycles)",
+      found, series.time_s[at], highest, settings.force_unit, error, settings.force_unit);
+}
+
 /// By time, since rows that are not finite are no part of a series. Returns how many are left.
 std::size_t leave_out_rows(const schema::Recording& recording, const std::vector<RowSpan>& spans,
                            AxisSeries& series) {
@@ -183,7 +234,10 @@ std::vector<std::string> doubts_of(const AxisSeries& series, const fitting::FitO
   std::string of_the_force = nothing_felt(series, settings);
   if (of_the_force.empty()) of_the_force = nothing_changes(series, settings);
   if (of_the_force.empty()) of_the_force = begins_elsewhere(series, settings);
-  if (!of_the_force.empty()) doubts.push_back(std::move(of_the_force));
+  for (std::string& doubt :
+       std::array{std::move(of_the_force), held_force(series), single_rows(series, settings)}) {
+    if (!doubt.empty()) doubts.push_back(std::move(doubt));
+  }
   if (settings.folds >= 2 && !series.cycle.empty() && *std::ranges::max_element(series.cycle) == 1) {
     doubts.emplace_back(
         "there is only one cycle: errors are held out by blocks of time within it, and say nothing of the "

@@ -52,8 +52,10 @@ std::map<std::uint32_t, std::uint32_t> numbered_anew(const std::vector<CycleVerd
   return numbers;
 }
 
-/// Takes cycles out of a series; false, and nothing changed, where too little would be left.
+/// Takes cycles out of a series; false, and nothing changed, where too little would be left, or no cycle:
+/// what lies outside of them all is not to decide.
 bool leave_out(AxisSeries& series, const std::vector<CycleVerdict>& cycles) {
+  if (std::ranges::none_of(cycles, [](const CycleVerdict& one) { return one.reason.empty(); })) return false;
   const auto numbers = numbered_anew(cycles);
   std::vector<std::uint8_t> counts = series.counts;
   counts.resize(series.force.size(), 1);

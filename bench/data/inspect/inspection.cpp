@@ -162,6 +162,16 @@ void warn_of_outliers(const InspectedSignal& signal, Lines& lines) {
                   signal.name, *signal.facts.outliers, largest.row, largest.height, signal.unit));
 }
 
+void warn_of_held_values(const Inspection& inspection, const InspectedSignal& signal, Lines& lines) {
+  if (!signal.facts.held_rows) return;
+  const std::size_t held = *signal.facts.held_rows;
+  const double rate_hz = 1.0 / (static_cast<double>(held) * inspection.sampling.period_s);
+  lines.push_back(fmt::format(
+      "{} changes only every {} rows: it was sampled at {:.4g} Hz, and held; rows at its own rate "
+      "are as 'kerf import --resample {:.4g}' makes them",
+      signal.name, held, rate_hz, rate_hz));
+}
+
 void warn_of_sampling(const Sampling& sampling, Lines& lines) {
   const auto count = [&](std::uint64_t number, const char* what) {
     if (number > 0) lines.push_back(fmt::format("the time {} {} rows", what, number));
@@ -254,6 +264,7 @@ std::vector<std::string> warnings_of(const Inspection& inspection) {
       lines.push_back(fmt::format("{} is not finite in {} rows", signal.name, signal.facts.not_finite));
     warn_of_drift(inspection, signal, lines);
     warn_of_outliers(signal, lines);
+    warn_of_held_values(inspection, signal, lines);
   }
   warn_of_sampling(inspection.sampling, lines);
   return lines;

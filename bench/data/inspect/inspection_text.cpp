@@ -76,6 +76,7 @@ ordered_json as_json(const InspectedSignal& signal) {
   json["least"] = as_json(signal.ends.least);
   json["most"] = as_json(signal.ends.most);
   json["longest_between"] = signal.ends.longest_between;
+  if (facts.held_rows) json["held_rows"] = *facts.held_rows;
   json["outliers"] = facts.outliers ? ordered_json(*facts.outliers) : ordered_json(nullptr);
   json["largest_outliers"] = outliers;
   return json;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <unordered_set>
 
+#include "signal/held_values.h"
 #include "signal/quantiles.h"
 #include "signal/row_noise.h"
 #include "signal/streamed_median.h"
@@ -13,7 +14,6 @@ namespace kerf::bench {
 namespace {
 
 constexpr std::size_t most_levels = std::size_t{1} << 18U;
-constexpr double stands_out = 8.0;  // times the noise
 constexpr double worth_a_word = 0.01;
 constexpr double beyond_a_step = 2.5;
 
@@ -99,6 +99,7 @@ SignalFacts signal_facts(const BlockedValues& values) {
   SignalFacts facts{.rows = values.size(), .quantum = quantum_of(values), .largest_outliers = {}};
   facts.noise = noise_of(values, facts.quantum);
   add_zero_facts(facts, values);
+  facts.held_rows = rows_held(values);
   return facts;
 }
 
@@ -107,19 +108,15 @@ void find_outliers(SignalFacts& facts, const BlockedValues& values, double noise
   auto& largest = facts.largest_outliers;
   if (!(noise > 0.0)) return;
   facts.outliers = 0;
-  for (std::uint64_t row = 1; row + 1 < values.size(); ++row) {
-    const double over_last = values[row] - values[row - 1];
-    const double over_next = values[row] - values[row + 1];
-    if (!(over_last * over_next > 0.0)) continue;
-    const double height = std::min(std::abs(over_last), std::abs(over_next));
-    if (!(height > stands_out * noise) || !std::isfinite(height)) continue;
+  const auto every = [](std::size_t) { return true; };
+  each_single_row(values, every, noise, [&](std::size_t row, double height) {
     ++*facts.outliers;
     largest.push_back({.row = row, .value = values[row], .height = height});
     std::ranges::push_heap(largest, higher);
-    if (largest.size() <= SignalFacts::most_outliers) continue;
+    if (largest.size() <= SignalFacts::most_outliers) return;
     std::ranges::pop_heap(largest, higher);
     largest.pop_back();
-  }
+  });
   std::ranges::sort(largest, higher);
 }
 

@@ -37,6 +37,8 @@ struct SignalFacts {
   bool above_zero = false;
   std::optional<double> nearest_zero;  ///< smallest size that is not 0
 
+  std::optional<std::size_t> held_rows;  ///< rows_held()
+
   std::optional<std::uint64_t> outliers;    ///< unknown where there is no noise to hold them against
   std::vector<SingleRow> largest_outliers;  ///< most_outliers at most, the largest first
 

@@ -16,10 +16,13 @@
 #include "segment/branches.h"
 #include "segment/strokes.h"
 #include "signal/quantiles.h"
+#include "signal/row_noise.h"
+#include "signal/streamed_median.h"
 
 namespace kerf::bench {
 namespace {
 
+constexpr double beyond_noise = 4.0;  // standard deviations
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
 /// Least and most position.
@@ -31,6 +34,30 @@ std::pair<double, double> range_of(const AxisMotion& motion) {
     most = std::max(most, motion.position(row));
   }
   return {least, most};
+}
+
+/// The beginning of a signal: its noise is that of the rest.
+struct FirstRows {
+  const BlockedValues& values;
+  [[nodiscard]] std::size_t size() const { return std::min<std::size_t>(values.size(), 200'000); }
+  [[nodiscard]] double operator[](std::size_t row) const { return values[row]; }
+};
+
+/// Standard deviation of what the low-pass leaves of the position's white noise; 0 where there is none.
+double noise_after(const AxisMotion& motion, const schema::RecordedRows& rows, std::size_t axis) {
+  const BlockedValues position = axis_values(rows, schema::Column::position, axis);
+  const BlockedValues time_s = axis_values(rows, schema::Column::time);
+  const std::uint64_t last = motion.rows() - 1;
+  const double seconds = time_s[last] - time_s[0];
+  const auto each = [&](const auto& look) {
+    each_second_difference(
+        position, [](std::size_t) { return true; }, look);
+  };
+  const double median = StreamedMedian::of(each);
+  if (!(median > 0.0) || !(seconds > 0.0)) return 0.0;
+  const double rate_hz = static_cast<double>(last) / seconds;
+  const double passed = motion.corner_hz() > 0.0 ? std::min(1.0, 2.0 * motion.corner_hz() / rate_hz) : 1.0;
+  return noise_of_second_differences(median) * std::sqrt(passed);
 }
 
 /// Turning points whose prominence is at least `height`, alternately closed and open.
@@ -146,6 +173,12 @@ schema::Cycles find_cycles(const schema::RecordedRows& rows, const SegmentOption
   const double height = options.prominence * (most - least);
   // A filter leaves rounding on a constant, which turns often.
   const bool moves = most - least > 1e-9 * std::max(std::abs(most), std::abs(least));
+  if (const double noise = noise_after(motion, rows, options.axis); moves && height < beyond_noise * noise) {
+    throw std::invalid_argument(fmt::format(
+        "no cycle of opening and closing: the position turns by no more than its noise does, {:.3g} "
+        "{} in all",
+        most - least, rows.about().axes[options.axis].position_unit));
+  }
   std::vector<Turn> turns = moves ? find_turns(motion, height) : std::vector<Turn>{};
 
   schema::Cycles cycles;

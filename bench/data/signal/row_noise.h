@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -16,6 +17,23 @@ void each_second_difference(const Values& values, const Counts& counts, const Lo
     if (!counts(i)) continue;
     const double size = std::abs(values[i + 1] - 2.0 * values[i] + values[i - 1]);
     if (std::isfinite(size)) look(size);
+  }
+}
+
+/// How many times the noise a single row stands out by.
+inline constexpr double stands_out = 8.0;
+
+/// Calls `look` with the row, and its height over the nearer neighbour, of every row that `counts` and stands
+/// out from both its neighbours in one direction by more than stands_out times a noise.
+template <typename Values, typename Counts, typename Look>
+void each_single_row(const Values& values, const Counts& counts, double noise, const Look& look) {
+  for (std::size_t i = 1; i + 1 < values.size(); ++i) {
+    if (!counts(i)) continue;
+    const double over_last = values[i] - values[i - 1];
+    const double over_next = values[i] - values[i + 1];
+    if (!(over_last * over_next > 0.0)) continue;
+    const double height = std::min(std::abs(over_last), std::abs(over_next));
+    if (height > stands_out * noise && std::isfinite(height)) look(i, height);
   }
 }
 

@@ -76,6 +76,19 @@ TEST_F(BadRows, OfAForceThatNeverChangesSayNothingOfTheMotion) {
   EXPECT_THAT(segment().errors, HasSubstr("which of them is closing is a guess"));
 }
 
+TEST_F(BadRows, ThatAreHeldAreSaidToBe) {
+  double held = 0.0;
+  keep(with([&](std::size_t row, double force) { return row % 10 == 0 ? held = force + noise(row) : held; }));
+  EXPECT_THAT(fit().errors,
+              HasSubstr("the force changes only every 10 rows: it was sampled at 100 Hz and held"));
+}
+
+TEST_F(BadRows, OfWhichOneDecidesAreNamed) {
+  keep(with([](std::size_t row, double force) { return row == 1500 ? force - 45.0 : force + noise(row); }));
+  EXPECT_THAT(fit().errors,
+              HasSubstr("1 single rows stand out from both their neighbours, most of all at 1.5 s by"));
+}
+
 TEST_F(BadRows, OfOneForceThroughoutAreRefused) {
   keep(with([](std::size_t, double) { return 2.5; }));
   for (const Outcome& outcome : {fit(), choose(), chart()})

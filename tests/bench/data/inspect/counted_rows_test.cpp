@@ -127,6 +127,20 @@ TEST(CountedRows, AreOfAllCyclesWhereNoneIsGood) {
   EXPECT_THAT(cycles_left_out(counted), HasSubstr("none of the cycles is without a flag"));
 }
 
+TEST(CountedRows, AreNotWhatLiesOutsideOfCyclesOfWhichNoneIsGood) {
+  schema::Recording recording = with_two_bad_cycles();
+  recording.cycle_flags.emplace();
+  for (std::uint32_t cycle = 1; cycle <= 10; ++cycle)
+    recording.cycle_flags->flags.push_back({.cycle = cycle, .fault = "by_hand", .reason = "another tool"});
+  recording.cycles->phases.erase(recording.cycles->phases.begin(), recording.cycles->phases.begin() + 1);
+  AxisSeries series = series_of(recording);
+  const RowChoice all{.rows = Counted::all, .cycles = {}};
+  ASSERT_GT(std::ranges::count(series.cycle, 0U), 50) << "rows of no cycle";
+  const CountedRows counted = mark_counted(series, recording, 0, all, felt_n);
+  EXPECT_TRUE(counted.none_is_good);
+  EXPECT_EQ(counted.rows, series.force.size());
+}
+
 TEST(CountedRows, OfAnotherAxisKnowNoCycles) {
   schema::Recording recording = with_two_bad_cycles();
   recording.cycles->axis = 1;

@@ -24,6 +24,30 @@ std::vector<double> rounded_wave(double noise, std::size_t rows = 20'000, double
   return values;
 }
 
+TEST(SignalFacts, KnowASensorThatIsReadMoreOftenThanItMeasures) {
+  std::mt19937_64 random(6);
+  std::normal_distribution<double> noise(0.0, 0.02);
+  std::vector<double> held;
+  std::vector<double> measured;
+  double value = 0.0;
+  for (int row = 0; row < 20'000; ++row) {
+    const double now = std::sin(1e-3 * row) + noise(random);
+    if (row % 10 == 0) value = now;
+    held.push_back(value);
+    measured.push_back(now);
+  }
+  EXPECT_EQ(signal_facts(blocked(held)).held_rows, std::optional<std::size_t>(10));
+  EXPECT_EQ(signal_facts(blocked(measured)).held_rows, std::nullopt);
+}
+
+TEST(SignalFacts, TakeNoEncoderThatCreepsForASensorThatIsHeld) {
+  std::vector<double> creeping;  // a motor at one speed, a count every four rows
+  for (int row = 0; row < 20'000; ++row) creeping.push_back(1e-6 * std::floor(0.25 * row));
+  EXPECT_EQ(signal_facts(blocked(creeping)).held_rows, std::nullopt);
+  EXPECT_EQ(signal_facts(blocked(rounded_wave(0.3))).held_rows, std::nullopt);
+  EXPECT_EQ(signal_facts(blocked(std::vector<double>(20'000, 1.0))).held_rows, std::nullopt);
+}
+
 TEST(SignalFacts, KnowTheStepOfASensorThatRounds) {
   const auto values = rounded_wave(0.7, 20'000, 0.0072);
   EXPECT_NEAR(quantum_of(blocked(values)).value(), 0.0072, 1e-12);

@@ -53,6 +53,19 @@ long count(const schema::Cycles& cycles, schema::Phase phase) {
                        [&](const auto& span) { return span.phase == phase; });
 }
 
+TEST(Segment, FindsNoCyclesInTheNoiseOfATool) {
+  schema::Recording recording = Cutting{}.recording();
+  std::mt19937_64 random(8);
+  std::normal_distribution<double> noise(0.0, 1e-6);
+  for (double& position : recording.position) position = 0.005 + noise(random);
+  try {
+    (void)find_cycles(recording, {});
+    FAIL() << "cycles were found";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_THAT(error.what(), HasSubstr("turns by no more than its noise does"));
+  }
+}
+
 TEST(Segment, FindsEveryCycleWithItsFourPhasesInOrder) {
   const auto cycles = find_cycles(Cutting{}.recording(), {});
   EXPECT_EQ(count(cycles, schema::Phase::closing), 4);
