@@ -49,7 +49,7 @@ def fail_allocations(injector, verb, tally):
 
 
 def table(what, rows):
-    lines = ["| verb | %s it makes | one fails | the verb fails | of these in HDF5 itself | did not hold |" % what,
+    lines = ["| verb | %s it makes | one fails | the verb fails | of these in a library itself | did not hold |" % what,
              "|---|---|---|---|---|---|"]
     lines += [f"| {name} | {count:,} | {tally.tried:,} | {tally.failed:,} | {tally.by_library} | {len(tally.faults)} |"
               for name, count, tally in rows]

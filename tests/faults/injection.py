@@ -18,13 +18,15 @@ from whole_files import wrong_with
 KINDS = ["short", "short+", "EINTR", "ENOSPC", "ENOSPC+", "EIO", "EIO+", "EDQUOT", "slow+"]
 HARMLESS = ("short", "slow")
 TIME_OUT_S = 60.0
+# They exit where they have no memory, or follow a null: HDF5, matio, and OpenSSL's libcrypto while it fetches its first digest.
+LIBRARIES = ("libhdf5", "libmatio", "libcrypto")
 
 
 @dataclass
 class Tally:
     tried: int = 0
     failed: int = 0  # runs that ended with another status than undisturbed
-    by_library: int = 0  # of these, ended by HDF5 or matio itself, which exit where they have no memory, or follow a null
+    by_library: int = 0  # of these, ended by one of LIBRARIES itself
     faults: list[str] = field(default_factory=list)  # what is wrong with the program
 
 
@@ -120,7 +122,7 @@ class Injector:
         tally.tried += 1
         tally.failed += not verb.ends_well(ended.status, undisturbed)
         crashed = ended.status is not None and not 0 <= ended.status <= 4
-        if crashed and ("libhdf5" in ended.log or "libmatio" in ended.log):
+        if crashed and any(library in ended.log for library in LIBRARIES):
             tally.by_library += 1
             ended = Ended(4, "kerf: ", ended.log)  # what it left is held to the same
         if wrong := self.judge(verb, folder, ended, False):

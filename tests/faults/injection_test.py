@@ -41,7 +41,7 @@ def main() -> int:
                 for at in [1, *drawn.sample(places_of_allocations(count, 1000, 1000, drawn), ALLOCATIONS)]:
                     injector.try_allocation(verb, at, tally)
     print("\n".join(tally.faults))
-    print(f"{tally.tried} tried, {tally.failed} of them failed, {tally.by_library} of these in HDF5 or matio itself; "
+    print(f"{tally.tried} tried, {tally.failed} of them failed, {tally.by_library} of these in a library itself; "
           f"{len(tally.faults)} did not hold (seed {arguments.seed})")
     return 1 if tally.faults else 0
 
