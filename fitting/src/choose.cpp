@@ -74,6 +74,14 @@ Choice choose_simplest(std::span<const FitResult> results, const Series& series,
   }
   const auto best =
       *std::ranges::min_element(candidates, {}, [&](const FitResult* result) { return error(*result); });
+  const std::string unit = " " + options.force_unit;
+  if (error(*best) >= force_rms) {
+    std::ostringstream why;
+    why << std::setprecision(3) << "no law does better on " << held_out_in_words(*best, options)
+        << " than no force at all: the best, " << best->model << ", errs by " << error(*best) << unit
+        << " where the root mean square force is " << force_rms << unit;
+    return {.model = "", .why = why.str()};
+  }
   const bool felt = error(*best) > limit;
   const auto serves = [&](const FitResult* result) {
     if (!felt) return error(*result) <= limit;
@@ -83,13 +91,16 @@ Choice choose_simplest(std::span<const FitResult> results, const Series& series,
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const auto* a, const auto* b) { return a->free_parameters < b->free_parameters; });
   const auto chosen = *std::ranges::find_if(candidates, serves);
-  const std::string unit = " " + options.force_unit;
   std::ostringstream why;
   why << std::setprecision(3);
   if (felt) {
-    why << "no law stays within the JND of " << limit << unit << " (at the root mean square force of "
-        << force_rms << unit << ") on " << held_out_in_words(*chosen, options) << "; " << chosen->model
-        << " with " << error(*chosen) << unit << " has the fewest parameters (" << chosen->free_parameters
+    const bool is_passed_over = std::ranges::any_of(
+        results, [&](const FitResult& law) { return !law.can_be_chosen() && error(law) <= limit; });
+    why << (is_passed_over ? "no law that explains the force better than its mean does stays"
+                           : "no law stays")
+        << " within the JND of " << limit << unit << " (at the root mean square force of " << force_rms
+        << unit << ") on " << held_out_in_words(*chosen, options) << "; " << chosen->model << " with "
+        << error(*chosen) << unit << " has the fewest parameters (" << chosen->free_parameters
         << ") of those that do as well as the best, " << best->model << " with " << error(*best) << unit;
   } else {
     why << chosen->model << " has the fewest parameters (" << chosen->free_parameters

@@ -174,6 +174,7 @@ FitResult fit_samples(std::string_view model, const Samples& samples, const FitO
   }
   result.converged = law.solution.converged;
   result.iterations = law.solution.iterations;
+  memory.keep_whole(law.solution.values);
   tell_a_part(options);
   measure(result, law, samples, options);
   estimate_parameters(result, law.problem, samples, law.weights, law.solution, options, law.loss);

@@ -23,6 +23,9 @@ class TrainedMemory {
   /// for.
   [[nodiscard]] Trained once(const Weights& seen, std::size_t size, double function_tolerance,
                              const std::function<Trained()>& train);
+  /// Where the law of all samples ended. Set before folds ask.
+  void keep_whole(const Values& values) { whole_ = values; }
+  [[nodiscard]] const Values& whole() const noexcept { return whole_; }
   /// Sums of arms over these samples.
   [[nodiscard]] const std::shared_ptr<ArmMemory>& arms() const { return arms_; }
 
@@ -45,6 +48,7 @@ class TrainedMemory {
 
   std::mutex mutex_;
   std::list<Entry> entries_;
+  Values whole_;
   std::shared_ptr<ArmMemory> arms_ = std::make_shared<ArmMemory>();
 };
 

@@ -57,6 +57,33 @@ Weights by_noise(const Samples& samples, const std::vector<double>& residuals, c
   return weights;
 }
 
+/// Whether the search of a law by descent goes on from the values of all samples: where they leave less of
+/// the samples shown than where it has ended, or lie elsewhere and leave no more than these samples can tell
+/// apart.
+bool goes_on_from(const Values& whole, const Trained& law, const Samples& samples) {
+  constexpr double noteworthy = 1e-6;  // a share of the sum of squares
+  constexpr double not_told = 10.0;    // variances: parameters of other samples leave some more, by chance
+  constexpr double elsewhere = 0.5;    // of a parameter
+  const Values& found = law.solution.values;
+  if (law.problem.facts().search != models::Search::descent || whole.empty() ||
+      whole.size() != found.size() || whole[0].size() != found[0].size())
+    return false;
+  const double left = squares_of(law.problem, samples, law.weights, whole);
+  if (left < (1.0 - noteworthy) * law.solution.squares) return true;
+  const auto shown =
+      static_cast<double>(std::ranges::count_if(law.weights, [](double w) { return w > 0.0; }));
+  const auto is_elsewhere = [&](std::size_t run) {
+    for (std::size_t i = 0; i < found[run].size(); ++i) {
+      const double largest = std::max(std::abs(found[run][i]), std::abs(whole[run][i]));
+      if (std::abs(found[run][i] - whole[run][i]) > elsewhere * largest) return true;
+    }
+    return false;
+  };
+  bool lies_elsewhere = false;
+  for (std::size_t run = 0; run < found.size(); ++run) lies_elsewhere = lies_elsewhere || is_elsewhere(run);
+  return lies_elsewhere && left <= (1.0 + not_told / shown) * law.solution.squares;
+}
+
 /// A law of a given size.
 Trained train_sized(std::string_view model, const FitOptions& options, const Samples& samples, Weights seen,
                     double function_tolerance, const TrainedMemory* memory) {
@@ -85,6 +112,13 @@ Trained train_sized(std::string_view model, const FitOptions& options, const Sam
     law.solution.rivals = std::move(before.rivals);  // which a search from one place does not meet
   };
   law.solution = found_by({});
+  // Samples without a stroke may offer no start that leads to the least, or not tell it from another.
+  if (memory != nullptr && goes_on_from(memory->whole(), law, samples)) {
+    Solution from_whole = found_by(memory->whole());
+    from_whole.iterations += law.solution.iterations;
+    from_whole.rivals = std::move(law.solution.rivals);
+    law.solution = std::move(from_whole);
+  }
   if (!law.solution.values.empty() && samples.runs.size() > 1 && samples.runs[0].noise_n == 0.0) {
     law.weights = by_noise(samples, left(), law.weights);
     search_again();

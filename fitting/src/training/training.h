@@ -24,7 +24,9 @@ inline constexpr double of_a_fold = 1e-8;
 
 /// Finds a law by the samples of positive weight alone. Whatever the data decide is decided by these: the
 /// start, the weight of each run, the scale of a robust loss, the number of segments, the number of arms.
-/// Only the range of the motion is taken from all samples, so that a law is defined where it is judged.
+/// Only the range of the motion is taken from all samples, so that a law is defined where it is judged; and
+/// of a law that is searched by descent, from where that of all samples ended (kept in `memory`) the search
+/// goes on where that leaves less of those shown than it has found, or no more than they can tell apart.
 /// Laws that were trained on the way are kept in `memory`, that of one fit; none: nothing is kept.
 /// @throws std::invalid_argument where there are no more samples than parameters.
 [[nodiscard]] Trained train(std::string_view model, const FitOptions& options, const Samples& samples,
