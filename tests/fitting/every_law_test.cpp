@@ -122,6 +122,42 @@ TEST(Fracture, CutsWithTheForceOfTheRowsThatAreCutHoweverSoonThePushEnds) {
   EXPECT_NEAR(value(3) * value(4), 1.5, 1e-6) << "not less for the tick of the fracture, whose force is none";
 }
 
+/// Tissue that yields between two of its few rows, and a tool that is free behind.
+struct YieldsOnce {
+  std::vector<double> time_s, penetration, velocity, force;
+  explicit YieldsOnce(double behind_n = 0.0) {
+    constexpr double depth_m = 0.284e-3;
+    const double energy = 0.17655 * 0.1 / 125.0 * std::expm1(125.0 * depth_m / 0.1);
+    const Law law = Law::make("fracture", std::vector{0.17655, 125.0, energy, 3.0, 0.01});
+    Law::State state = law.initial_state();
+    for (int i = 0; i < 700; ++i) {
+      const models::Motion motion{0.84e-6 * i, 0.84e-4};
+      time_s.push_back(0.01 * i);
+      penetration.push_back(motion.penetration);
+      velocity.push_back(motion.velocity);
+      force.push_back(law.step(state, motion, 0.01).force + (motion.penetration > depth_m ? behind_n : 0.0));
+    }
+  }
+  [[nodiscard]] FitResult fitted() const {
+    return fit(
+        "fracture",
+        {.time_s = time_s, .penetration = penetration, .velocity = velocity, .force = force, .cycle = {}},
+        {.folds = 0});
+  }
+};
+
+// A grid of depths passes over what lies between two rows; the largest fall of the force does not.
+TEST(Fracture, IsFoundWhereTheTissueYieldsBetweenTwoRows) { EXPECT_LT(YieldsOnce().fitted().rmse, 1e-4); }
+
+// No tissue cuts with a force that pulls: starts that claimed to had left no place for any that does not.
+TEST(Fracture, IsFoundWhereTheSensorPullsBehindIt) {
+  const YieldsOnce yields(-0.03);
+  const double behind =
+      static_cast<double>(std::ranges::count_if(yields.penetration, [](double x) { return x > 0.284e-3; }));
+  const double truth = 0.03 * std::sqrt(behind / static_cast<double>(yields.force.size()));
+  EXPECT_LT(yields.fitted().rmse, 1.01 * truth);
+}
+
 TEST(FuzzyKelvin, IsFoundFromItsRuptures) {
   const std::vector<double> values{80.0, 70.0, 35.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.2};
   const models::Options options{{"memberships", 1.0}, {"most_depth", 1.0}, {"most_speed", 1.0}};

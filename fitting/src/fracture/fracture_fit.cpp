@@ -159,7 +159,8 @@ Solution solve_fracture(const Problem& problem, const Samples& samples, const We
   FractureDescent on_few(problem, few, light, options.loss);
   std::vector<FracturePlace> places;
   if (near.empty()) {
-    places = fracture_starts(on_few.objective(), samples.most, grid_for(few, to_the_end));
+    places = fracture_starts(on_few.objective(), samples.most, grid_for(few, to_the_end),
+                             depths_of_falls(samples, weights));
   } else {
     places.push_back(on_few.place(coordinates.at(near[0])));
   }

@@ -158,7 +158,9 @@ FracturePlace FractureRows::with_short_crack(const Coordinates& coordinates,
   if (cut_.mean > 0.0)
     best.at[Coordinates::crack] += std::log(cutting_at(coordinates, best.at).force_n / cut_.mean);
   const bool is_short = best.at[Coordinates::crack] <= best.at[Coordinates::depth];
-  if (!is_short || !coordinates.admit(best.at)) best.squares = infinite;
+  // No crack cuts with a force that is none, or pulls.
+  const bool is_of_a_crack = cut_.mean > 0.0 || cut_.weights == 0.0;
+  if (!is_short || !is_of_a_crack || !coordinates.admit(best.at)) best.squares = infinite;
   return best;
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "fracture/fracture_cells.h"
+#include "samples.h"
 
 namespace kerf::fitting {
 
@@ -14,9 +15,15 @@ struct FractureGrid {
   std::size_t kept;
 };
 
-/// Places to go on from: of depths and cracks all over the tool's path, amplitude and exponent at their best,
-/// those that leave least, each beyond the neighbours of the ones before. The best comes first.
+/// Depths between the two rows over which the force falls most while the tool goes in, the largest fall
+/// first: where a tissue may have yielded. A grid of depths passes over what lies between two rows.
+[[nodiscard]] std::vector<double> depths_of_falls(const Samples& samples, const Weights& weights);
+
+/// Places to go on from: of depths and cracks all over the tool's path and of depths beside (`falls`),
+/// amplitude and exponent at their best, those that leave least, each beyond the neighbours of the ones
+/// before. The best comes first.
 [[nodiscard]] std::vector<FracturePlace> fracture_starts(const FractureObjective& objective, double most_m,
-                                                         const FractureGrid& grid);
+                                                         const FractureGrid& grid,
+                                                         const std::vector<double>& falls);
 
 }  // namespace kerf::fitting
