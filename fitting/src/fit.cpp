@@ -107,18 +107,26 @@ bool can_pull(const Trained& law, Samples samples) {
   return std::ranges::any_of(force, [](double one) { return one < 0.0; });
 }
 
-/// What a law that only pushes leaves of a force that pulls is no noise.
+/// What a law that only pushes leaves of a force that pulls is no noise: where it renders none, noise pushes
+/// as often as it pulls.
 void warn_of_pulling(FitResult& result, const Trained& law, const std::vector<double>& residuals,
                      const Samples& samples) {
   constexpr double noteworthy = 0.01;  // of the samples, and of the largest force
+  constexpr double beyond_noise = 4.0;
+  constexpr double by_chance = 4.0;  // standard errors
   const double largest = samples.largest_force;
-  std::size_t pulling = 0;
+  const double strong = std::max(noteworthy * largest, beyond_noise * noise_of_rows(samples));
+  double pulling = 0.0;
+  double pushing = 0.0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (residuals[i] + samples.force[i] < -1e-9 * largest) return;
-    pulling += samples.force[i] < -noteworthy * largest ? 1 : 0;
+    const double rendered = residuals[i] + samples.force[i];
+    if (rendered < -1e-9 * largest) return;
+    if (samples.force[i] < -strong) pulling += 1.0;
+    if (samples.force[i] > strong && rendered < noteworthy * largest) pushing += 1.0;
   }
-  const double share = static_cast<double>(pulling) / static_cast<double>(samples.size());
-  if (share < noteworthy || can_pull(law, samples)) return;
+  const double share = (pulling - pushing) / static_cast<double>(samples.size());
+  if (share < noteworthy || pulling - pushing < by_chance * std::sqrt(pulling + pushing)) return;
+  if (can_pull(law, samples)) return;
   std::ostringstream warning;
   warning << std::lround(100.0 * share) << " % of the samples pull, and this law only pushes";
   const auto options = models::Law::options(result.model);

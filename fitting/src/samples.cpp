@@ -4,9 +4,12 @@
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include <Eigen/Core>
 #include <boost/math/statistics/univariate_statistics.hpp>
+
+#include "uncertainty/statistics.h"
 
 namespace kerf::fitting {
 namespace {
@@ -254,6 +257,18 @@ Weights without_fold(const Samples& samples, const Weights& weights, std::size_t
     if (samples.fold[i] == fold) rest[i] = 0.0;
   }
   return rest;
+}
+
+double noise_of_rows(const Samples& samples, const Weights& weights) {
+  std::vector<double> sizes;
+  const auto counts = [&](std::size_t i) { return weights.empty() || weights[i] > 0.0; };
+  for (const Run& run : samples.runs) {
+    for (std::size_t i = run.begin + 1; i + 1 < run.end; ++i) {
+      if (counts(i - 1) && counts(i) && counts(i + 1))
+        sizes.push_back(std::abs(samples.force[i - 1] - 2.0 * samples.force[i] + samples.force[i + 1]));
+    }
+  }
+  return robust_deviation(std::move(sizes)) / std::sqrt(6.0);
 }
 
 }  // namespace kerf::fitting

@@ -59,5 +59,9 @@ using Weights = std::vector<double>;
 [[nodiscard]] Weights thinned_weights(const Samples& samples, const Weights& weights, const Samples& few);
 /// The same less those of one fold.
 [[nodiscard]] Weights without_fold(const Samples& samples, const Weights& weights, std::size_t fold);
+/// Standard deviation of white noise from row to row, by what a straight line through three rows leaves: of
+/// white noise the second difference has six times the variance, of motion that is sampled finely it has
+/// none. Of the rows that `weights` have, or of all where it is empty.
+[[nodiscard]] double noise_of_rows(const Samples& samples, const Weights& weights = {});
 
 }  // namespace kerf::fitting

@@ -242,6 +242,16 @@ TEST(Fit, OfAForceThatPullsSaysThatTheLawCannot) {
   EXPECT_THAT(friction.warnings, testing::Not(Contains(HasSubstr("only pushes"))));
 }
 
+TEST(Fit, OfNoiseWhereThereIsNoForceSaysNothingOfPulling) {
+  Strokes strokes(2000, 0.02, models::Law::make("precontact", std::vector{3.0, 1e-6}));
+  for (std::size_t i = 0; i < strokes.penetration.size(); ++i) {
+    if (strokes.penetration[i] < 0.25) strokes.force[i] -= 3.0 * strokes.penetration[i];
+    strokes.penetration[i] -= 0.25;
+  }
+  const FitResult noise = fit("kelvin", strokes.series(), {.folds = 0});
+  EXPECT_THAT(noise.warnings, testing::Not(Contains(HasSubstr("only pushes"))));
+}
+
 TEST(Fit, SaysWhichProductTheDataTell) {
   // Tissue so thick that it stiffens by less than the noise shows: F = alpha beta x / L0.
   const models::Options thick{{"thickness", 1000.0}, {"viscous", false}, {"zero_at_contact", true}};

@@ -118,6 +118,31 @@ TEST(Floor, OfCyclesThatDifferIsTheirSpread) {
               HasSubstr("the spread from cycle to cycle is most to blame"));
 }
 
+TEST(Floor, OfTissueThatRemembersIsNoSpread) {
+  // A slow branch beside the spring, held: at one position and speed the force goes on falling.
+  Cycles cycles(0, 0.0, 0.0, 0.0, spring);
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal(0.0, 0.02);
+  double slow = 0.0;
+  for (std::uint32_t number = 1; number <= 20; ++number) {
+    for (int i = 0; i < 2000; ++i) {
+      const double velocity = i < 300 ? 0.4 / 0.3 : i >= 1300 && i < 1600 ? -0.4 / 0.3 : 0.0;
+      const double before = cycles.penetration.empty() ? 0.0 : cycles.penetration.back();
+      cycles.time_s.push_back(1e-3 * static_cast<double>(cycles.time_s.size()));
+      cycles.penetration.push_back(std::max(0.0, before + 1e-3 * velocity));
+      cycles.velocity.push_back(velocity);
+      slow += 1e-3 * (40.0 * velocity - slow / 0.4);
+      cycles.force.push_back(spring(cycles.penetration.back(), velocity) + slow + normal(random));
+      cycles.cycle.push_back(number);
+    }
+  }
+  const Floor floor = cycles.floor();
+  ASSERT_GT(floor.velocity_n, 0.1) << "the maps do not know it";
+  EXPECT_GT(floor.memory_n, 0.5 * floor.velocity_n);
+  const Floor spread = Cycles(40, 0.0, 0.2, 0.02, spring).floor();
+  EXPECT_LT(spread.memory_n, 0.3 * spread.velocity_n);
+}
+
 TEST(Floor, OfASensorInStepsKnowsTheStep) {
   Cycles cycles(10, 0.0, 0.0, 0.0, spring);
   for (double& force : cycles.force) force = 0.25 * std::round(force / 0.25);
@@ -167,6 +192,15 @@ TEST(ErrorParts, HaveSquaresThatAddUp) {
   const ErrorParts better = parts_of(0.2, 0.2, floor);
   EXPECT_EQ(better.law + better.hand + better.data, 0.0);
   EXPECT_NEAR(better.spread, std::sqrt(0.04 - 0.01), 1e-12);
+  Floor remembers = floor;
+  remembers.memory_n = 0.35;
+  const ErrorParts known = parts_of(0.7, 0.6, remembers);
+  EXPECT_NEAR(known.memory, 0.35, 1e-12);
+  EXPECT_NEAR(std::pow(known.data, 2) + std::pow(known.spread, 2), 0.16 - 0.1225 - 0.01, 1e-12);
+  EXPECT_NEAR(parts_of(0.2, 0.2, remembers).memory, std::sqrt(0.1225 - 0.16 + 0.04), 1e-12)
+      << "most is known";
+  EXPECT_THAT(blame(0.7, 0.6, remembers, 0.01),
+              HasSubstr("a memory, which neither position nor speed tells"));
   EXPECT_EQ(blame(0.7, 0.6, floor, 0.7), "") << "nobody feels it";
   EXPECT_THAT(blame(0.7, 0.6, floor, 0.1), StartsWith("of 7 JND, the loop's filter and latency"));
   EXPECT_EQ(blame(0.7, 0.6, {}, 0.1), "") << "nothing was held out";

@@ -106,7 +106,7 @@ json own_as_json(const FittedLaw& law, const RecordingFit& fit, const std::strin
 json parts_as_json(const fitting::FitResult& fit, const fitting::Floor& floor) {
   if (floor.folds < 2) return nullptr;
   const fitting::ErrorParts parts = fitting::parts_of(fit.held_out_rmse(), fit.cv_rmse, floor);
-  return {{"loop", parts.loop}, {"law", parts.law},       {"hand", parts.hand},
+  return {{"loop", parts.loop}, {"law", parts.law},       {"hand", parts.hand},    {"memory", parts.memory},
           {"data", parts.data}, {"spread", parts.spread}, {"sensor", parts.sensor}};
 }
 
@@ -194,6 +194,7 @@ json floor_as_json(const fitting::Floor& floor) {
   return {{"position", error(floor.position_n)},
           {"velocity", error(floor.velocity_n)},
           {"unlimited", error(floor.unlimited_n)},
+          {"memory", error(floor.memory_n)},
           {"noise", floor.noise_n},
           {"quantum", floor.quantum_n > 0.0 ? json(floor.quantum_n) : json(nullptr)},
           {"held_out", known ? json(floor.by_cycle ? "cycles" : "blocks") : json(nullptr)}};

@@ -8,12 +8,12 @@
 #include <string_view>
 #include <utility>
 
+#include <Eigen/Cholesky>
 #include <boost/math/statistics/univariate_statistics.hpp>
 
 #include "floor/force_map.h"
 #include "kerf/fitting/checked_recordings.h"
 #include "samples.h"
-#include "uncertainty/statistics.h"
 
 namespace kerf::fitting {
 namespace {
@@ -29,6 +29,7 @@ struct Point {
   double v = 0.0;
   double force = 0.0;
   std::size_t fold = 0;
+  std::size_t sample = 0;  ///< that it is
 };
 
 struct Points {
@@ -53,7 +54,8 @@ Points points_of(const Samples& samples) {
     points.all.push_back({.x = samples.motion[i].penetration,
                           .v = samples.motion[i].velocity,
                           .force = samples.force[i],
-                          .fold = samples.fold[i]});
+                          .fold = samples.fold[i],
+                          .sample = i});
     points.velocities.push_back(samples.motion[i].velocity);
   }
   std::ranges::sort(points.velocities);
@@ -74,9 +76,9 @@ std::vector<double> quantile_borders(const std::vector<double>& sorted, std::siz
   return borders;
 }
 
-/// Squares that a map leaves of one fold, trained on the folds that it is shown.
-template <typename Shown>
-double squares_left(const Points& points, const Fineness& fine, std::size_t held, Shown&& shown) {
+/// Tells what a map leaves of each point of one fold, trained on the folds that it is shown.
+template <typename Shown, typename Left>
+void each_left(const Points& points, const Fineness& fine, std::size_t held, Shown&& shown, Left&& told) {
   std::array<BinnedCurve, 2> curve{BinnedCurve(points.least, points.most, fine.curve, fine.with_slopes),
                                    BinnedCurve(points.least, points.most, fine.curve, fine.with_slopes)};
   const auto of_direction = [&](const Point& point) -> BinnedCurve& { return curve[point.v < 0.0 ? 1 : 0]; };
@@ -93,26 +95,95 @@ double squares_left(const Points& points, const Fineness& fine, std::size_t held
     }
     surface.settle();
   }
-  double squares = 0.0;
-  for (const Point& point : points.all) {
+  for (std::size_t i = 0; i < points.all.size(); ++i) {
+    const Point& point = points.all[i];
     if (point.fold != held) continue;
     double left = point.force - of_direction(point).at(point.x, point.v);
     if (fine.rows > 0) left -= surface.at(point.x, point.v);
-    squares += left * left;
+    told(i, left);
   }
-  return squares;
 }
 
 /// Error on all folds, each foretold by the other folds or by every other one of them.
 double error_of(const Points& points, const Fineness& fine, bool by_half) {
   double squares = 0.0;
   for (std::size_t held = 0; held < points.folds; ++held) {
-    squares += squares_left(points, fine, held, [&](std::size_t fold) {
+    const auto shown = [&](std::size_t fold) {
       const std::size_t place = (fold + points.folds - held) % points.folds;
       return place != 0 && (!by_half || place % 2 == 1);
-    });
+    };
+    each_left(points, fine, held, shown, [&](std::size_t, double left) { squares += left * left; });
   }
   return std::sqrt(squares / static_cast<double>(points.all.size()));
+}
+
+constexpr std::size_t traces = 6;
+constexpr std::size_t features = 2 * traces;
+
+/// What a motion leaves behind: changes of the penetration and of its square, each fading by six times from
+/// five periods to a quarter of the recording, in powers of one number. Of every sample, a row each.
+std::vector<std::array<double, features>> traces_of(const Samples& samples) {
+  const double quickest_s = 5.0 * samples.median_period_s;
+  const double slowest_s = std::max(2.0 * quickest_s, 0.25 * samples.duration_s);
+  const double deepest = std::max(std::abs(samples.least), std::abs(samples.most));
+  std::vector<std::array<double, features>> all(samples.size());
+  for (const Run& run : samples.runs) {
+    for (std::size_t i = run.begin + 1; i < run.end; ++i) {
+      const double x = samples.motion[i].penetration / deepest;
+      const double before = samples.motion[i - 1].penetration / deepest;
+      for (std::size_t k = 0; k < traces; ++k) {
+        const double time_s = quickest_s * std::pow(slowest_s / quickest_s,
+                                                    static_cast<double>(k) / static_cast<double>(traces - 1));
+        const double fading = std::exp(-samples.period_s[i] / time_s);
+        all[i][k] = fading * all[i - 1][k] + x - before;
+        all[i][traces + k] = fading * all[i - 1][traces + k] + x * x - before * before;
+      }
+    }
+  }
+  return all;
+}
+
+/// Of what a map leaves of held-out folds, what such traces tell of it: their least squares on the other
+/// folds.
+double remembered_in(const Points& points, const Samples& samples, const Fineness& fine) {
+  using Matrix = Eigen::Matrix<double, features, features>;
+  using Vector = Eigen::Matrix<double, features, 1>;
+  struct Sums {
+    Matrix normal = Matrix::Zero();
+    Vector score = Vector::Zero();
+  };
+  const auto all = traces_of(samples);
+  const auto trace = [&](std::size_t i) {
+    return Eigen::Map<const Vector>(all[points.all[i].sample].data());
+  };
+  std::vector<double> left(points.all.size(), 0.0);
+  std::vector<Sums> sums(points.folds);
+  for (std::size_t held = 0; held < points.folds; ++held) {
+    const auto others = [&](std::size_t fold) { return fold != held; };
+    each_left(points, fine, held, others, [&](std::size_t i, double one) {
+      left[i] = one;
+      sums[held].normal.noalias() += trace(i) * trace(i).transpose();
+      sums[held].score += one * trace(i);
+    });
+  }
+  double before = 0.0;
+  double after = 0.0;
+  std::vector<Vector> weights;
+  for (std::size_t held = 0; held < points.folds; ++held) {
+    Sums others;
+    for (std::size_t fold = 0; fold < points.folds; ++fold) {
+      if (fold == held) continue;
+      others.normal += sums[fold].normal;
+      others.score += sums[fold].score;
+    }
+    others.normal.diagonal().array() += 1e-9 * others.normal.trace();
+    weights.emplace_back(others.normal.ldlt().solve(others.score));
+  }
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    before += left[i] * left[i];
+    after += std::pow(left[i] - trace(i).dot(weights[points.all[i].fold]), 2);
+  }
+  return std::sqrt(std::max(0.0, before - after) / static_cast<double>(left.size()));
 }
 
 /// sqrt(a) of e^2(n) = a + b/n, from the errors with all the other folds shown and with half of them.
@@ -134,17 +205,6 @@ double quantum_of(std::vector<double> force) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < force.size(); ++i) steps.push_back(force[i] - force[i - 1]);
   return boost::math::statistics::median(steps);
-}
-
-/// Of white noise the second difference has six times the variance; of motion that is sampled finely it has
-/// none.
-double noise_of_rows(const Samples& samples) {
-  std::vector<double> sizes;
-  for (const Run& run : samples.runs) {
-    for (std::size_t i = run.begin + 2; i < run.end; ++i)
-      sizes.push_back(std::abs(samples.force[i] - 2.0 * samples.force[i - 1] + samples.force[i - 2]));
-  }
-  return robust_deviation(std::move(sizes)) / std::sqrt(6.0);
 }
 
 double squared(double value) { return value * value; }
@@ -193,10 +253,14 @@ Floor floor_of(const CheckedRecordings& recordings) {
   }
   floor.velocity_n = pays(surfaces);
   floor.unlimited_n = with_any_number(floor.velocity_n, error_of(points, best, true), points.folds);
+  floor.memory_n = std::min(floor.velocity_n, remembered_in(points, samples, best));
   return floor;
 }
 
 void Floor::lower_to(double error_n) noexcept {
+  // What errs less than every map knows that much of what is remembered.
+  if (error_n < velocity_n)
+    memory_n = std::sqrt(std::max(0.0, squared(memory_n) - squared(velocity_n) + squared(error_n)));
   for (double* level : {&position_n, &velocity_n, &unlimited_n}) *level = std::min(*level, error_n);
 }
 
@@ -211,7 +275,13 @@ ErrorParts parts_of(double rendered_n, double fitted_n, const Floor& floor) {
   parts.loop = take_down_to(fitted_n);
   parts.law = take_down_to(floor.position_n);
   parts.hand = take_down_to(floor.velocity_n);
-  parts.data = take_down_to(floor.unlimited_n);
+  // Of less than the floor, that much less of it is left.
+  const double known = squared(floor.memory_n) - std::max(0.0, squared(floor.velocity_n) - left);
+  const double remembered = std::clamp(known, 0.0, std::max(0.0, left - squared(floor.noise_n)));
+  parts.memory = std::sqrt(remembered);
+  left -= remembered;
+  parts.data =
+      take_down_to(std::sqrt(std::max(squared(floor.noise_n), squared(floor.unlimited_n) - remembered)));
   parts.spread = take_down_to(floor.noise_n);
   parts.sensor = std::sqrt(left);
   return parts;
@@ -221,12 +291,14 @@ std::string blame(double rendered_n, double fitted_n, const Floor& floor, double
   if (floor.folds < 2 || !std::isfinite(rendered_n) || rendered_n <= jnd_n) return "";
   const ErrorParts parts = parts_of(rendered_n, fitted_n, floor);
   const std::string_view from = floor.by_cycle ? "from cycle to cycle" : "from one block of time to another";
-  std::array<std::pair<double, std::string>, 6> all{{{parts.loop, "the loop's filter and latency"},
-                                                     {parts.law, "the law"},
-                                                     {parts.hand, "the hand, whose speed changes"},
-                                                     {parts.data, "too little data"},
-                                                     {parts.spread, "the spread " + std::string(from)},
-                                                     {parts.sensor, "the sensor"}}};
+  std::array<std::pair<double, std::string>, 7> all{
+      {{parts.loop, "the loop's filter and latency"},
+       {parts.law, "the law"},
+       {parts.hand, "the hand, whose speed changes"},
+       {parts.memory, "a memory, which neither position nor speed tells"},
+       {parts.data, "too little data"},
+       {parts.spread, "the spread " + std::string(from)},
+       {parts.sensor, "the sensor"}}};
   std::ranges::stable_sort(all, std::greater<>{}, [](const auto& part) { return part.first; });
   std::ostringstream words;
   words.precision(2);

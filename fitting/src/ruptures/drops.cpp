@@ -5,8 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "uncertainty/statistics.h"
-
 namespace kerf::fitting {
 namespace {
 
@@ -18,18 +16,6 @@ constexpr double beyond_at_once = 4.0;    ///< likewise, of one from a row to th
 
 std::size_t rows_of_a_drop(const Samples& samples) {
   return static_cast<std::size_t>(std::max(1.0, std::round(drop_time_s / samples.median_period_s)));
-}
-
-/// Standard deviation of noise from row to row, by what a straight line through three rows leaves.
-double noise_of_rows(const Samples& samples, const Weights& weights) {
-  std::vector<double> bends;
-  for (const Run& run : samples.runs) {
-    for (std::size_t i = run.begin + 1; i + 1 < run.end; ++i) {
-      if (weights[i - 1] > 0.0 && weights[i] > 0.0 && weights[i + 1] > 0.0)
-        bends.push_back(std::abs(samples.force[i - 1] - 2.0 * samples.force[i] + samples.force[i + 1]));
-    }
-  }
-  return robust_deviation(std::move(bends)) / std::sqrt(6.0);
 }
 
 /// By how much the force is less in the 20 ms from a row on than in those before it, on average.
