@@ -319,6 +319,22 @@ void say_mirrored(const cal::SensorCalibration& found, std::vector<std::string>&
       "pushes back; the matrix tells forces as they were given, on the sensor");
 }
 
+/// A matrix is straight: what it errs by along a curved component is no scatter, and adds to its interval.
+void say_curved(const cal::Holds& holds, const std::vector<std::size_t>& components,
+                cal::SensorCalibration& found, std::vector<std::string>& warnings) {
+  for (const cal::Curvature& curve : cal::curvatures(holds)) {
+    cal::ComponentEstimate& one = found.components[curve.component];
+    one.half_width_at_full_scale += curve.at_full_scale;
+    one.largest_half_width += curve.largest;
+    const std::string unit = unit_of(components[curve.component]);
+    warnings.push_back(fmt::format(
+        "the signals are curved along {}: the matrix, which is straight, errs by {:.2g} {} at {:.4g} {}, "
+        "{:.2g} % of full scale; calibrate over the range that is used",
+        holds.components[curve.component], curve.largest, unit, curve.at, unit,
+        100.0 * curve.largest / one.full_scale));
+  }
+}
+
 }  // namespace
 
 SensorCalibrationFiles calibrate_sensor(MeasuredHolds measured, const LoadScript* script,
@@ -350,6 +366,7 @@ SensorCalibrationFiles calibrate_sensor(MeasuredHolds measured, const LoadScript
     throw std::invalid_argument(measured.source + ": " + error.what());
   }
   say_mirrored(found, files.warnings);
+  say_curved(holds, prepared.components(), found, files.warnings);
   if (found.condition > 100.0)
     files.warnings.push_back(
         fmt::format("the loads tell some components badly from others (condition {:.3g})", found.condition));

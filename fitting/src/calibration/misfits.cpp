@@ -230,7 +230,71 @@ class Search {
   std::vector<std::size_t> kept_;
 };
 
+constexpr std::size_t fewest_loads = 5;
+
+std::size_t different_loads(const Eigen::VectorXd& shares) {
+  constexpr double apart = 1e-3;  // of full scale
+  std::vector<double> sorted(shares.begin(), shares.end());
+  std::ranges::sort(sorted);
+  std::size_t count = 1;
+  for (std::size_t i = 1; i < sorted.size(); ++i) count += sorted[i] - sorted[i - 1] > apart ? 1 : 0;
+  return count;
+}
+
+/// What square and cube of a component's loads take of the signals.
+std::optional<Curvature> curvature_along(const Holds& holds, const Design& design,
+                                         const Eigen::MatrixXd& signals, Eigen::Index component,
+                                         double tolerance) {
+  constexpr double more = 2.0;  // numbers a signal
+  const Eigen::VectorXd share = design.columns.col(component);
+  const double left = static_cast<double>(design.columns.rows() - design.columns.cols()) - more;
+  if (different_loads(share) < fewest_loads || left < 2.0) return std::nullopt;
+  Eigen::MatrixXd bent(design.columns.rows(), design.columns.cols() + 2);
+  bent << design.columns, share.array().square().matrix(), share.array().cube().matrix();
+  const Fitted straight = fitted_of(design.columns, signals);
+  const Fitted curved = fitted_of(bent, signals);
+  double log_p = 0.0;
+  for (Eigen::Index i = 0; i < signals.cols(); ++i) {
+    const double total = straight.rest.col(i).squaredNorm();
+    const double rest = std::max(1e-14 * total, curved.rest.col(i).squaredNorm());
+    if (total > rest) log_p = std::min(log_p, log_tail(more, left, (total - rest) / more / (rest / left)));
+  }
+  if (log_p > std::log(level / static_cast<double>(design.components() * signals.cols())))
+    return std::nullopt;
+  const Eigen::MatrixXd sensitivity = straight.coefficients.topRows(design.components()).transpose();
+  const Eigen::MatrixXd to_shares = sensitivity.completeOrthogonalDecomposition().pseudoInverse();
+  const Eigen::VectorXd off =
+      (to_shares.row(component) * (straight.rest - curved.rest).transpose()).transpose();
+  Eigen::Index worst = 0;
+  Eigen::Index end = 0;
+  off.cwiseAbs().maxCoeff(&worst);
+  share.cwiseAbs().maxCoeff(&end);
+  double deviation = 0.0;
+  for (std::size_t hold = 0; hold < holds.holds.size(); ++hold)
+    deviation = std::max(deviation, load_deviation(holds, hold, component));
+  const double full = design.full_scale(component);
+  if (!(std::abs(off(worst)) > std::max(tolerance, 5.0 * deviation / full))) return std::nullopt;
+  return Curvature{.component = static_cast<std::size_t>(component),
+                   .largest = std::abs(off(worst)) * full,
+                   .at = share(worst) * full,
+                   .at_full_scale = std::abs(off(end)) * full};
+}
+
 }  // namespace
+
+std::vector<Curvature> curvatures(const Holds& holds, double tolerance) {
+  require_sound(holds);
+  const Design design = design_of(holds, {});
+  Eigen::MatrixXd signals(static_cast<Eigen::Index>(holds.holds.size()),
+                          static_cast<Eigen::Index>(holds.signals.size()));
+  for (std::size_t i = 0; i < holds.signals.size(); ++i)
+    signals.col(static_cast<Eigen::Index>(i)) = signal_of(holds, i);
+  std::vector<Curvature> all;
+  for (Eigen::Index k = 0; k < design.components(); ++k) {
+    if (auto one = curvature_along(holds, design, signals, k, tolerance)) all.push_back(*one);
+  }
+  return all;
+}
 
 std::vector<Misfit> misfits(const Holds& holds, double tolerance) {
   require_sound(holds);

@@ -53,6 +53,25 @@ TEST(LoadChecks, NameGramsThatWereGivenAsKilograms) {
   EXPECT_NEAR(found[0].ratio, 0.001, 0.0005);
 }
 
+TEST(LoadChecks, NameTheComponentAlongWhichASignalIsCurved) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed)
+    EXPECT_TRUE(curvatures(simulate({}, seed).holds).empty()) << "weights that are a little off are no curve";
+  SimulatedHolds made = simulate({}, 1);
+  constexpr std::size_t fz = 2;
+  double full = 0.0;
+  for (const Hold& hold : made.holds.holds) full = std::max(full, std::abs(hold.load[fz]));
+  for (Hold& hold : made.holds.holds) {
+    const double share = hold.load[fz] / full;
+    hold.signal[fz] += 0.2 * share * share * share;  // of ten volts
+  }
+  const std::vector<Curvature> found = curvatures(made.holds);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].component, fz);
+  EXPECT_GT(found[0].largest, 0.003 * full);
+  EXPECT_LT(found[0].largest, 0.02 * full);
+  EXPECT_LE(found[0].at_full_scale, found[0].largest);
+}
+
 TEST(LoadChecks, NameADeadSignal) {
   Holds holds = simulate(Simulated{}, 3).holds;
   for (Hold& hold : holds.holds) hold.signal[3] = 0.25;

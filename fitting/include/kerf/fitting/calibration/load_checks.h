@@ -44,6 +44,20 @@ struct Misfit {
 /// from what is given by more than `tolerance` of full scale and five standard deviations of its own load.
 [[nodiscard]] std::vector<Misfit> misfits(const Holds& holds, double tolerance = 0.02);
 
+/// A component along which the signals are not straight, whatever the matrix.
+struct Curvature {
+  std::size_t component = 0;
+  double largest = 0.0;        ///< of what a straight line errs by among the loads, either way [N, N·m]
+  double at = 0.0;             ///< the load at which it does
+  double at_full_scale = 0.0;  ///< of the same, at the largest load
+};
+
+/// Square and cube of a component's load beside the load itself: along which component the signals follow
+/// them (a test of both at 1e-6, over all components and signals), and a straight line errs by more than
+/// `tolerance` of full scale and five standard deviations of the loads. Components with fewer than five
+/// different loads are not asked.
+[[nodiscard]] std::vector<Curvature> curvatures(const Holds& holds, double tolerance = 0.002);
+
 /// What is wrong with a signal.
 struct SignalFault {
   enum class Kind : unsigned char {
