@@ -23,7 +23,7 @@ OpenSweepTables::OpenSweepTables(const std::filesystem::path& file) : file_(file
       facts_.texts.push_back(texts_of(input));
     for (const std::string& table : sweep_layout::tables_of(opened_.id())) open_table(table);
   } catch (const h5::Error& error) {
-    throw DamageError(file, error);
+    throw DamageError(file, error.what());
   }
 }
 
@@ -77,7 +77,7 @@ void OpenSweepTables::read(std::size_t table, std::size_t column, std::uint64_t 
   try {
     h5::read(dataset, h5::native<double>(), values.size(), values.data(), first);
   } catch (const h5::Error& error) {
-    throw DamageError(file_, error);
+    throw DamageError(file_, error.what());
   }
 }
 

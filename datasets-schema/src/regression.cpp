@@ -240,7 +240,7 @@ std::vector<StoredForces> in_process::read_regression(const std::filesystem::pat
     }
     return all;
   } catch (const h5::Error& error) {
-    throw DamageError(file, error);
+    throw DamageError(file, error.what());
   }
 }
 

@@ -187,7 +187,7 @@ auto read_checked(const std::filesystem::path& file, Read read) {
     }
     return read(tree.file());
   } catch (const h5::Error& error) {
-    throw DamageError(file, error);
+    throw DamageError(file, error.what());
   } catch (const std::bad_alloc&) {
     throw FormatError(file.string() + ": more bytes than fit into the memory; expected a session");
   }
@@ -225,7 +225,7 @@ std::vector<std::uint8_t> read_sealed(const std::filesystem::path& file, std::si
     }
     return read_box(opened.id(), entry);
   } catch (const h5::Error& error) {
-    throw DamageError(file, error);
+    throw DamageError(file, error.what());
   }
 }
 

@@ -123,12 +123,18 @@ const Workspace::Looked* Workspace::known(const WorkspaceEntry& entry) const {
 }
 
 void Workspace::look_into(const WorkspaceEntry& entry) {
-  Looked looked{
-      .bytes = entry.bytes, .modified = entry.modified, .kind = std::nullopt, .seconds = std::nullopt};
+  Looked looked;
+  looked.bytes = entry.bytes;
+  looked.modified = entry.modified;
   try {
-    looked.seconds = schema::read_tail(entry.path).last.time_s;
+    schema::Tail tail = schema::read_tail(entry.path);
+    looked.seconds = tail.last.time_s;
+    looked.uuid = std::move(tail.uuid);
     looked.kind = FileKind::recording;
-  } catch (const std::exception&) {  // a damaged one says why when it is opened
+  } catch (const schema::DamageError&) {  // says why when it is opened
+    looked.kind = FileKind::recording;
+    looked.is_damaged = true;
+  } catch (const std::exception&) {
     const std::string schema = schema::schema_of(entry.path);
     if (schema == schema::session_schema_name) looked.kind = FileKind::session;
     if (schema == schema::schema_name || !entry.name.ends_with(".h5")) looked.kind = FileKind::recording;
@@ -170,6 +176,8 @@ bool Workspace::take_what_is_known(WorkspaceEntry& entry) const {
   entry.is_looked_into = true;
   entry.kind = looked->kind.value_or(entry.kind);
   entry.seconds = looked->seconds;
+  entry.uuid = looked->uuid;
+  entry.is_damaged = looked->is_damaged;
   return looked->kind.has_value();
 }
 

@@ -39,6 +39,8 @@ struct WorkspaceEntry {
   std::filesystem::file_time_type modified;
   bool is_looked_into = true;     ///< false: taken for a recording by its name alone, so far
   std::optional<double> seconds;  ///< of a recording that was looked into and can be read
+  std::string uuid;               ///< of the same
+  bool is_damaged = false;        ///< HDF5 can make nothing of it: it may have been a recording
 };
 
 /// The folder that a studio works in: what is in it, four folders deep, hidden ones and symbolic links left
@@ -76,6 +78,8 @@ class Workspace {
     std::filesystem::file_time_type modified;
     std::optional<FileKind> kind;
     std::optional<double> seconds;
+    std::string uuid;
+    bool is_damaged = false;
   };
 
   [[nodiscard]] std::vector<WorkspaceEntry> list() const;

@@ -18,6 +18,7 @@
 #include "laws/placement.h"
 #include "protocol/apparatus.h"
 #include "recordings/provenance.h"
+#include "report/results/found_results.h"
 #include "sealed/session_facts.h"
 
 namespace kerf::bench {
@@ -42,6 +43,8 @@ std::string list_of_recordings(const std::vector<WorkspaceEntry>& entries) {
                    list.empty() ? "" : ",", it.id, text_of_json(it.name), it.bytes, modified_of(it),
                    it.name.ends_with(".partial"));
     if (it.seconds) fmt::format_to(std::back_inserter(list), R"(,"seconds":{})", text_of_json(*it.seconds));
+    if (!it.uuid.empty()) fmt::format_to(std::back_inserter(list), R"(,"uuid":{})", text_of_json(it.uuid));
+    if (it.is_damaged) list += R"(,"damaged":true)";
     list += '}';
   }
   return list;
@@ -95,6 +98,21 @@ nlohmann::ordered_json session_entry(const WorkspaceEntry& entry) {
   return json;
 }
 
+/// A result of recordings says of which.
+nlohmann::ordered_json file_entry(const WorkspaceEntry& entry) {
+  constexpr std::array results{FileKind::fit, FileKind::chart, FileKind::choice, FileKind::stability};
+  nlohmann::ordered_json json{{"id", entry.id},
+                              {"name", entry.name},
+                              {"kind", name_of(entry.kind)},
+                              {"modified", modified_of(entry)}};
+  if (std::ranges::find(results, entry.kind) != results.end()) json["of"] = recordings_of(entry.path);
+  return json;
+}
+
+bool is_law(FileKind kind) { return kind == FileKind::law; }
+bool is_session(FileKind kind) { return kind == FileKind::session; }
+bool is_other(FileKind kind) { return !is_law(kind) && !is_session(kind) && kind != FileKind::recording; }
+
 /// Told by what each file is and by what is `read` from some, so that the list itself need not be made.
 std::string state_of(const std::vector<WorkspaceEntry>& entries, const nlohmann::ordered_json& read) {
   std::string all = text_of_json(read);
@@ -104,24 +122,24 @@ std::string state_of(const std::vector<WorkspaceEntry>& entries, const nlohmann:
   return sha256_of(std::string_view(all)).substr(0, 16);
 }
 
-/// What files of a kind say of themselves; of one that has not changed since, without reading it again.
+/// What some files say of themselves; of one that has not changed since, without reading it again.
 class EntriesRead {
  public:
   using Make = nlohmann::ordered_json (*)(const WorkspaceEntry&);
 
-  EntriesRead(FileKind kind, Make make) : kind_(kind), make_(make) {}
+  EntriesRead(bool (*takes)(FileKind), Make make) : takes_(takes), make_(make) {}
 
   [[nodiscard]] nlohmann::ordered_json of(const std::vector<WorkspaceEntry>& entries) {
     nlohmann::ordered_json found = nlohmann::ordered_json::array();
     std::unordered_map<std::string, Read> still_there;
     for (const WorkspaceEntry& it : entries) {
-      if (it.kind != kind_) continue;
+      if (!takes_(it.kind)) continue;
       const auto before = read_.find(it.id);
       const bool is_known =
           before != read_.end() && before->second.bytes == it.bytes && before->second.modified == it.modified;
       found.push_back(is_known ? std::move(before->second.json) : make_(it));
       // What could not be read may be readable the next time, as it is.
-      if (found.back()["error"] == "")
+      if (found.back().value("error", "").empty())
         still_there[it.id] = {.bytes = it.bytes, .modified = it.modified, .json = found.back()};
     }
     read_ = std::move(still_there);
@@ -135,28 +153,17 @@ class EntriesRead {
     nlohmann::ordered_json json;
   };
 
-  FileKind kind_;
+  bool (*takes_)(FileKind);
   Make make_;
   std::unordered_map<std::string, Read> read_;  ///< by id
 };
 
 /// Of slow answers, which one thread gives.
 struct FolderRead {
-  EntriesRead laws{FileKind::law, law_entry};
-  EntriesRead sessions{FileKind::session, session_entry};
+  EntriesRead laws{is_law, law_entry};
+  EntriesRead sessions{is_session, session_entry};
+  EntriesRead files{is_other, file_entry};
 };
-
-/// Recordings, laws and sessions have lists of their own.
-nlohmann::ordered_json other_files(const std::vector<WorkspaceEntry>& entries) {
-  constexpr std::array listed{FileKind::recording, FileKind::law, FileKind::session};
-  nlohmann::ordered_json files = nlohmann::ordered_json::array();
-  for (const WorkspaceEntry& it : entries) {
-    if (std::ranges::find(listed, it.kind) != listed.end()) continue;
-    files.push_back(
-        {{"id", it.id}, {"name", it.name}, {"kind", name_of(it.kind)}, {"modified", modified_of(it)}});
-  }
-  return files;
-}
 
 /// @param unless what the asker knows the state of.
 std::string workspace_json(Workspace& workspace, FolderRead& read, const std::string& device,
@@ -170,7 +177,7 @@ std::string workspace_json(Workspace& workspace, FolderRead& read, const std::st
       {"folder", workspace.folder().filename().string()}, {"version", software()}, {"device", device}};
   json["laws"] = std::move(laws);
   json["sessions"] = std::move(sessions);
-  json["files"] = other_files(entries);
+  json["files"] = read.files.of(entries);
   json["unlooked"] = std::ranges::count(entries, false, &WorkspaceEntry::is_looked_into);
   json["state"] = state;
   std::string text = text_of_json(json);

@@ -48,7 +48,7 @@ auto fields(Is<in_process::RecordingFacts> auto& x) {
   return std::tie(x.about, x.rows, x.is_live, x.first_time_s, x.last_time_s, x.period_s, x.widths);
 }
 auto fields(Is<Tail> auto& x) {
-  return std::tie(x.status, x.axes, x.measures_force, x.rows, x.last, x.events, x.last_event);
+  return std::tie(x.uuid, x.status, x.axes, x.measures_force, x.rows, x.last, x.events, x.last_event);
 }
 auto fields(Is<ForceChannel> auto& x) { return std::tie(x.name, x.unit); }
 auto fields(Is<StoredTrajectory> auto& x) { return std::tie(x.axes, x.time_s, x.position); }

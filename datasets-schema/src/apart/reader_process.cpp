@@ -15,9 +15,9 @@
 #include <unistd.h>
 
 #include <kerf/schema/stand_in.h>
+#include <kerf/schema/validate.h>
 
 #include "hdf5/files.h"
-#include "validate/inspect.h"
 
 namespace kerf::schema::apart {
 namespace {

@@ -10,7 +10,6 @@
 
 #include "apart/reader_process.h"
 #include "hdf5/files.h"
-#include "validate/inspect.h"
 
 namespace kerf::schema {
 

@@ -95,8 +95,11 @@ Tail in_process::read_tail(const std::filesystem::path& file) {
   const auto inspection = inspect_readable(file, false);
   const hid_t opened = inspection.file.id();
   try {
-    const bool has_status = h5::has_attribute(opened, "status");
-    Tail tail{.status = has_status ? h5::read_texts(opened, "status").front() : std::string(),
+    const auto text_of = [&](const char* name) {
+      return h5::has_attribute(opened, name) ? h5::read_texts(opened, name).front() : std::string();
+    };
+    Tail tail{.uuid = text_of("uuid"),
+              .status = text_of("status"),
               .axes = axes_of(opened),
               .measures_force = h5::is_dataset(opened, "/samples/force_measured"),
               .rows = rows_in_time(opened)};
@@ -108,7 +111,7 @@ Tail in_process::read_tail(const std::filesystem::path& file) {
     read_last_event(opened, tail);
     return tail;
   } catch (const h5::Error& error) {
-    throw DamageError(file, error);
+    throw DamageError(file, error.what());
   }
 }
 

@@ -84,7 +84,7 @@ struct OpenRecording::Implementation {
     try {
       action();
     } catch (const h5::Error& error) {
-      throw DamageError(path, error);
+      throw DamageError(path, error.what());
     } catch (const std::bad_alloc&) {
       throw FormatError(path.string() + ": more than fits into the memory");
     }

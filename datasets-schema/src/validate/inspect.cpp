@@ -311,6 +311,11 @@ class Inspector {
 
 }  // namespace
 
+DamageError::DamageError(const std::filesystem::path& file, std::string why)
+    : FormatError(one_line(file.string() + ": damaged HDF5 file (" + why +
+                           "); expected a sound one, take it from a copy")),
+      reason(std::move(why)) {}
+
 const Finding* Inspection::first_fatal() const {
   const auto found = std::ranges::find(findings, true, &Finding::fatal);
   return found == findings.end() ? nullptr : &*found;
@@ -330,7 +335,7 @@ Inspection inspect(const std::filesystem::path& file, bool look_through_texts) {
     if (look_through_texts) require_sound_texts(file, inspection.file);
     Inspector(inspection, std::filesystem::file_size(file)).run();
   } catch (const h5::Error& error) {
-    throw DamageError(file, error);
+    throw DamageError(file, error.what());
   }
   return inspection;
 }

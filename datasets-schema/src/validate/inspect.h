@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <kerf/schema/recording.h>
@@ -28,16 +27,6 @@ struct Inspection {
   bool live = false;  ///< still written, or left by a crash: rows may differ in number
 
   [[nodiscard]] const Finding* first_fatal() const;
-};
-
-/// An HDF5 file that HDF5 cannot make sense of: cut short, overwritten in places.
-struct DamageError : FormatError {
-  DamageError(const std::filesystem::path& file, std::string why)
-      : FormatError(one_line(file.string() + ": damaged HDF5 file (" + why +
-                             "); expected a sound one, take it from a copy")),
-        reason(std::move(why)) {}
-  DamageError(const std::filesystem::path& file, const h5::Error& cause) : DamageError(file, cause.what()) {}
-  std::string reason;
 };
 
 /// @throws h5::Error where HDF5 would fall over the file's texts.

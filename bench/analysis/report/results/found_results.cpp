@@ -1,6 +1,9 @@
 #include "report/results/found_results.h"
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
+#include <fstream>
 #include <optional>
 #include <stdexcept>
 
@@ -118,7 +121,67 @@ void look_through(const fs::path& folder, const std::string& uuid, std::vector<F
                   folder.string()));
 }
 
+/// Takes the UUIDs from the keys that a result's owner has (owner_key()), and from those of "recordings";
+/// ends at the first key of the whole that follows them.
+class OwnerReader : public nlohmann::json_sax<json> {
+ public:
+  [[nodiscard]] std::vector<std::string> take() { return std::move(uuids_); }
+
+  bool key(std::string& name) override {
+    key_ = name;
+    return depth_ != 1 || uuids_.empty() || name == "recordings";
+  }
+  bool string(std::string& value) override {
+    constexpr std::array<std::string_view, 4> of_the_whole{"recording", "uuid", "recording_uuid",
+                                                           "law_of_recording"};
+    const bool is_owner = depth_ == 1 ? std::ranges::find(of_the_whole, key_) != of_the_whole.end()
+                                      : depth_ == 3 && list_ == "recordings" && key_ == "uuid";
+    if (is_owner && is_uuid(value) && std::ranges::find(uuids_, value) == uuids_.end())
+      uuids_.push_back(value);
+    return true;
+  }
+  bool start_object(std::size_t) override { return go_down(); }
+  bool start_array(std::size_t) override {
+    if (depth_ == 1) list_ = key_;
+    return go_down();
+  }
+  bool end_object() override { return go_up(); }
+  bool end_array() override { return go_up(); }
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool parse_error(std::size_t, const std::string&, const json::exception&) override { return false; }
+
+ private:
+  [[nodiscard]] static bool is_uuid(std::string_view text) {
+    return text.size() == 36 && text[8] == '-' && text[13] == '-' && text[18] == '-' && text[23] == '-';
+  }
+  bool go_down() {
+    ++depth_;
+    return true;
+  }
+  bool go_up() {
+    if (--depth_ == 1) list_.clear();
+    return true;
+  }
+
+  std::vector<std::string> uuids_;
+  std::string key_;
+  std::string list_;  ///< of the whole, that is being read
+  int depth_ = 0;
+};
+
 }  // namespace
+
+std::vector<std::string> recordings_of(const fs::path& file) {
+  std::ifstream text(file);
+  OwnerReader reader;
+  if (text) (void)json::sax_parse(text, &reader);
+  return reader.take();
+}
 
 std::string_view verb_of(ResultKind kind) noexcept {
   switch (kind) {

@@ -36,6 +36,10 @@ struct FoundResult {
 [[nodiscard]] std::vector<FoundResult> find_results(const std::vector<std::filesystem::path>& paths,
                                                     const std::string& uuid);
 
+/// The UUIDs of the recordings that a result says it is of, fits of several with all of theirs; none where it
+/// says nothing, or cannot be read. Reads no further than it has to: of thousands, a list is made.
+[[nodiscard]] std::vector<std::string> recordings_of(const std::filesystem::path& file);
+
 /// A JSON file. @throws std::invalid_argument that names it.
 [[nodiscard]] nlohmann::ordered_json read_result(const std::filesystem::path& file);
 

@@ -24,6 +24,7 @@ struct Place {
 
 /// The end of a recording, to be looked at again and again while it is written.
 struct Tail {
+  std::string uuid;
   std::string status;
   std::vector<Axis> axes;
   bool measures_force = false;
@@ -34,7 +35,8 @@ struct Tail {
 };
 
 /// Reads only the end of a file: some milliseconds, however long the recording is.
-/// @throws FormatError; std::system_error, std::invalid_argument as read_recording().
+/// @throws FormatError, of damage a DamageError; std::system_error, std::invalid_argument as
+/// read_recording().
 [[nodiscard]] Tail read_tail(const std::filesystem::path& file);
 
 }  // namespace kerf::schema

@@ -4,7 +4,15 @@
 #include <string>
 #include <vector>
 
+#include <kerf/schema/recording.h>
+
 namespace kerf::schema {
+
+/// An HDF5 file that HDF5 cannot make sense of: cut short, overwritten in places.
+struct DamageError : FormatError {
+  DamageError(const std::filesystem::path& file, std::string why);
+  std::string reason;  ///< in HDF5's words
+};
 
 /// One way in which a file departs from the schema.
 struct Violation {

@@ -78,6 +78,28 @@ TEST_F(WorkspaceRoutes, ListEveryFileByWhatItIs) {
   EXPECT_EQ(all.at("unlooked"), 0);
 }
 
+TEST_F(WorkspaceRoutes, TellOfWhichRecordingsResultsAre) {
+  const schema::Recording cut = test::punch({.seconds = 0.5});
+  schema::write_recording(folder_ / "cut.h5", cut);
+  fs::create_directory(folder_ / "elsewhere");
+  std::ofstream(folder_ / "elsewhere" / "fit.json") << json({{"recording", cut.header.uuid}, {"fits", {}}});
+  std::ofstream(folder_ / "study.toml") << "nothing";
+  const json all = folder();
+  EXPECT_EQ(all.at("recordings")[0].at("uuid"), cut.header.uuid);
+  ASSERT_EQ(all.at("files").size(), 2U);
+  EXPECT_EQ(all["files"][0].at("of"), json::array({cut.header.uuid}));
+  EXPECT_FALSE(all["files"][1].contains("of"));
+}
+
+TEST_F(WorkspaceRoutes, ListARecordingThatIsDamagedAsThat) {
+  schema::write_recording(folder_ / "cut.h5", test::punch({.seconds = 0.5}));
+  EXPECT_FALSE(folder().at("recordings")[0].contains("damaged"));
+  fs::resize_file(folder_ / "cut.h5", fs::file_size(folder_ / "cut.h5") / 2);
+  const json cut = folder().at("recordings").at(0);
+  EXPECT_EQ(cut.at("damaged"), true);
+  EXPECT_FALSE(cut.contains("seconds"));
+}
+
 TEST_F(WorkspaceRoutes, TellALawAsItIsNow) {
   const fs::path file = folder_ / "a.law.toml";
   const auto axis_of_law = [&] { return folder().at("laws")[0].at("axis").get<std::string>(); };

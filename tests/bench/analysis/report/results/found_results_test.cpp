@@ -74,6 +74,24 @@ TEST_F(FoundResults, AFolderIsLookedThroughTwoFoldersDown) {
   EXPECT_EQ(find_results({folder_.path()}, "here").size(), 1U);
 }
 
+TEST_F(FoundResults, SayOfWhichRecordingsTheyAre) {
+  const std::string cut = "5cc0d24c-c519-4b93-b5f1-2578576cfeb4";
+  const std::string other = "01234567-89ab-4cde-8f01-23456789abcd";
+  const auto of = [&](const std::string& text) { return recordings_of(write("result.json", text)); };
+  EXPECT_THAT(of(R"({"recording": ")" + cut + R"(", "fits": [{"uuid": ")" + other + R"("}]})"),
+              ElementsAre(cut));
+  EXPECT_THAT(of(R"({"recording": ")" + cut + R"(", "recordings": [{"uuid": ")" + cut +
+                 R"(", "cycles": [{"uuid": "x"}]}, {"uuid": ")" + other + R"("}], "fits": []})"),
+              ElementsAre(cut, other));
+  EXPECT_THAT(of(R"({"recording": "cut.h5", "uuid": ")" + cut + R"("})"), ElementsAre(cut));
+  EXPECT_THAT(of(R"({"points": [{"recording": ")" + other + R"("}], "recording": ")" + cut + R"("})"),
+              ElementsAre(cut));
+  EXPECT_THAT(of(R"({"recording": ")" + cut + R"(", "fits": [)"), ElementsAre(cut)) << "and reads no further";
+  EXPECT_THAT(of(R"({"recording": "cut.h5"})"), ElementsAre());
+  EXPECT_THAT(of("{"), ElementsAre());
+  EXPECT_THAT(recordings_of(folder_ / "nowhere.json"), ElementsAre());
+}
+
 TEST_F(FoundResults, ThatAreNoneAreRefusedByTheirNames) {
   EXPECT_THAT(refusal(write("table.json", R"({"rows": 3})")), HasSubstr("table.json: not the JSON of fit"));
   EXPECT_THAT(refusal(write("broken.json", "{")), HasSubstr("broken.json: not JSON"));
