@@ -231,6 +231,15 @@ void write_header(schema::Recording& recording, const ReadFile& read, const std:
   add_history(recording.header, fmt::format("import: {} rows of {}{}", recording.rows(), file, how));
 }
 
+/// What no tool was recorded in. One row is kept: it is a measurement, if not of a motion.
+void require_motion(Imported& imported, const std::string& name) {
+  const schema::Recording& recording = imported.recording;
+  if (std::ranges::none_of(recording.position, [](double one) { return std::isfinite(one); }))
+    throw std::invalid_argument(
+        fmt::format("{}: no line has a position that is a number; map another column to it", name));
+  if (recording.rows() == 1) imported.warnings.emplace_back("there is one row alone, in which nothing moves");
+}
+
 /// Rows of a file as a recording; `name` stands for them in messages.
 Imported recording_of(const ReadFile& read, TextTable table, const std::string& name,
                       const std::string& trial, const ImportOptions& options) {
@@ -270,6 +279,7 @@ Imported recording_of(const ReadFile& read, TextTable table, const std::string& 
   take_begin(imported, read);
   const double period_s = median_period(recording.time);
   take_channels(imported, rows, options, period_s);
+  require_motion(imported, name);
   report_irregular_lines(imported);
   number_ticks(imported, period_s);
   recording.flags.assign(recording.rows(), 0);

@@ -46,7 +46,8 @@ class ImportRun {
   ImportRun(Workspace& workspace, const ImportOrder& order, JobProgress& progress)
       : workspace_(workspace), order_(order), progress_(progress) {}
 
-  std::string run() {
+  JobEnd run() {
+    std::size_t refused = 0;
     progress_.steps = order_.files.size() * steps_a_file;
     std::string first;
     std::string why;
@@ -55,12 +56,13 @@ class ImportRun {
       if (progress_.stop && result["state"] != "done") break;
       if (result["state"] == "done" && first.empty()) first = result["recording"];
       if (result["state"] != "done" && why.empty()) why = result["error"];
+      if (result["state"] != "done") ++refused;
       keep_result(order_.files[i].upload, result);
       progress_.done = (i + 1) * steps_a_file;
     }
     if (progress_.stop && first.empty()) throw std::runtime_error("stopped");
     if (first.empty()) throw std::invalid_argument(why);
-    return first;
+    return {first, refused == 0 ? "" : fmt::format("{} did not come in", refused)};
   }
 
  private:
@@ -68,7 +70,7 @@ class ImportRun {
     const Upload& upload = file.upload;
     try {
       const fs::path output = workspace_.new_file(file.name, ".h5");
-      write_whole_file(upload.mapping(), import_file_text(order_.mapping));
+      write_whole_file(upload.mapping(), import_file_text(file.mapping));
       const fs::path said = upload.folder / "said.json";
       const auto told = [&](std::size_t done, std::size_t of) {
         const double share = of == 0 ? 0.0 : static_cast<double>(done) / static_cast<double>(of);

@@ -11,16 +11,15 @@
 
 namespace kerf::bench {
 
-/// A file that has come, and what its recording is to be called, without an ending.
+/// A file that has come, what its recording is to be called, without an ending, and how its columns are read.
 struct FileToTakeIn {
   Upload upload;
   std::string name;
+  ImportFile mapping;
 };
 
-/// Files to import by one mapping.
 struct ImportOrder {
   std::vector<FileToTakeIn> files;
-  ImportFile mapping;
   std::filesystem::path program;  ///< kerf itself
 };
 

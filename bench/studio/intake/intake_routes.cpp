@@ -123,7 +123,7 @@ class Intake {
   }
 
   Json start(const nlohmann::json& given) {
-    ImportOrder order{.files = {}, .mapping = mapping_in(given, true), .program = program_};
+    ImportOrder order{.files = {}, .program = program_};
     const auto files = given.find("files");
     if (files == given.end() || !files->is_array() || files->empty() || files->size() > most_files)
       throw RequestError(400, fmt::format("'files' is not a list of 1 to {} files", most_files));
@@ -138,7 +138,8 @@ class Intake {
                            fmt::format("two files are to become {}.h5; choose another name for one", name));
       std::error_code ignored;
       std::filesystem::remove(upload.result(), ignored);  // of an attempt before
-      order.files.push_back({.upload = std::move(upload), .name = std::move(name)});
+      order.files.push_back(
+          {.upload = std::move(upload), .name = std::move(name), .mapping = mapping_in(file, true)});
     }
     return {{"job", jobs_.add(import_job(workspace_, std::move(order)))}};
   }

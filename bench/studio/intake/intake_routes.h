@@ -19,7 +19,7 @@ namespace kerf::bench {
 ///     POST /api/import/preview      {upload, map, options}: preview_as_json()
 ///     GET  /api/import/mapping?id=  {"map", "options"} of a NAME.import.toml
 ///     POST /api/import/mapping      {name, map, options, replace?}: saves one: {"id", "name"}
-///     POST /api/import/start        {files: [{upload, name}], map, options}: {"job"}
+///     POST /api/import/start        {files: [{upload, name, map, options}]}: {"job"}
 ///     GET  /api/import/result?upload=      import_result()
 ///
 /// Options: {sheet, stretch, rate, resample, velocity_window, origin, point, sensor_rotation, strict} as an

@@ -54,8 +54,15 @@ class IntakeRoutes : public testing::Test {
     EXPECT_EQ(answer.status, 200) << answer.body;
     return json::parse(answer.body);
   }
-  json job(const json& files, const std::string& by = map) {
-    const auto answer = ask_.post("/api/import/start", {{"files", files}, {"map", by}});
+  /// As a page orders it; of files that say nothing else by one map.
+  auto start(json files) {
+    for (json& file : files) {
+      if (!file.contains("map")) file["map"] = map;
+    }
+    return ask_.post("/api/import/start", {{"files", files}});
+  }
+  json job(const json& files) {
+    const auto answer = start(files);
     EXPECT_EQ(answer.status, 200) << answer.body;
     return test::ended_job(jobs_, json::parse(answer.body)["job"]);
   }
@@ -125,6 +132,19 @@ TEST_F(IntakeRoutes, SayInOneLineWhatNobodyCanRead) {
   EXPECT_FALSE(fs::exists(folder_ / "photo.h5"));
 }
 
+TEST_F(IntakeRoutes, ReadEachFileByItsOwnMapping) {
+  const std::string one = handed_over("one.txt", press());
+  const std::string other = handed_over("other.txt", press());
+  const json ended =
+      job({{{"upload", one}, {"name", "one"}},
+           {{"upload", other}, {"name", "other"}, {"map", "time=1[ms],position=3[mm],force=2[N]"}}});
+  ASSERT_EQ(ended["state"], "done") << ended["error"];
+  const schema::Recording as_said = schema::read_recording(folder_ / "one.h5");
+  const schema::Recording swapped = schema::read_recording(folder_ / "other.h5");
+  EXPECT_NEAR(swapped.time.back(), 1e-3 * as_said.time.back(), 1e-9);
+  EXPECT_NEAR(swapped.force_measured[50], 1e3 * as_said.position[50], 1e-9);
+}
+
 TEST_F(IntakeRoutes, GoOnWithTheOtherFilesWhereOneCannotBeRead) {
   const std::string bad = handed_over("bad.txt", "no numbers at all\n");
   const std::string good = handed_over("good.txt", press());
@@ -138,9 +158,7 @@ TEST_F(IntakeRoutes, GoOnWithTheOtherFilesWhereOneCannotBeRead) {
 TEST_F(IntakeRoutes, TakeNoNameThatIsTakenNorOneTwice) {
   const std::string id = handed_over("9.txt", press());
   test::write_text(folder_ / "cut.h5", "somebody's");
-  const auto asked = [&](const json& files) {
-    return ask_.post("/api/import/start", {{"files", files}, {"map", map}});
-  };
+  const auto asked = [&](const json& files) { return start(files); };
   const auto taken = asked({{{"upload", id}, {"name", "cut"}}});
   EXPECT_EQ(taken.status, 409);
   EXPECT_THAT(taken.body, HasSubstr("cut.h5 is there already"));
@@ -155,8 +173,7 @@ TEST_F(IntakeRoutes, ImportNothingOfAFileThatHasNotComeWhole) {
   const json begun = json::parse(ask_.post("/api/import/begin", {{"name", "9.txt"}, {"bytes", 100}}).body);
   const std::string id = begun["upload"];
   (void)ask_.post_bytes("/api/import/piece", {{"upload", id}, {"at", "0"}}, "1,2,3\n");
-  const auto refused =
-      ask_.post("/api/import/start", {{"files", {{{"upload", id}, {"name", "nine"}}}}, {"map", map}});
+  const auto refused = start({{{"upload", id}, {"name", "nine"}}});
   EXPECT_EQ(refused.status, 409);
   EXPECT_THAT(refused.body, HasSubstr("6 of 100 bytes have come"));
   const json overview = json::parse(ask_.get("/api/import").body);
@@ -197,7 +214,7 @@ TEST_F(IntakeRoutes, EndAnImportThatIsStopped) {
     const std::string name = fmt::format("{}.txt", i);
     files.push_back({{"upload", handed_over(name, press())}, {"name", fmt::format("r{}", i)}});
   }
-  const auto answer = ask_.post("/api/import/start", {{"files", files}, {"map", map}});
+  const auto answer = start(files);
   const std::size_t number = json::parse(answer.body)["job"];
   jobs_.stop(number);
   const json ended = test::ended_job(jobs_, number);

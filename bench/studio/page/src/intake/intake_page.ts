@@ -1,4 +1,5 @@
-import type { ImportResult, IntakeOverview } from "../api/intake";
+import { ApiError } from "../api/api";
+import type { ImportResult, IntakeOverview, Mapping } from "../api/intake";
 import { button, element } from "../ui/dom";
 import type { PageContext } from "../ui/view";
 import { onDropped } from "./dropped";
@@ -17,6 +18,7 @@ export class IntakePage {
   private uploader: Uploader | null = null;
   private taken = new Set<string>(); // names of recordings of the folder
   private sending: Promise<void> = Promise.resolve();
+  private isStarting = false;
   private readonly list: FileList;
   private readonly mapping: MappingPanel;
   private readonly imported: Imported;
@@ -199,7 +201,8 @@ export class IntakePage {
     this.list.show(this.files, this.chosen);
     const ready = this.toImport;
     this.go.textContent = ready.length > 1 ? `Import ${ready.length} files` : "Import";
-    this.go.disabled = ready.length === 0 || this.job.isUnderWay || ready.some((it) => this.doubt(it) !== "");
+    this.go.disabled =
+      ready.length === 0 || this.isStarting || this.job.isUnderWay || ready.some((it) => this.doubt(it) !== "");
     this.clear.hidden = !this.files.some((it) => it.state === "done");
     this.go.hidden = ready.length === 0;
     this.hint.hidden = this.files.length > 0;
@@ -218,19 +221,42 @@ export class IntakePage {
 
   private async start(): Promise<void> {
     const files = this.toImport;
-    const { map, options } = this.mapping.mapping;
+    this.isStarting = true;
+    this.show();
     try {
+      const orders = new Map<TakenFile, object>();
+      for (const file of files) {
+        const mapping = await this.mappingOf(file);
+        if (mapping === null) {
+          this.context.say(`${file.name}: no line names its columns. Say what they are first.`);
+          this.choose(file);
+          return;
+        }
+        if (mapping) orders.set(file, { upload: file.upload, name: file.recording, ...mapping });
+      }
+      if (orders.size === 0) return;
       const { job } = await this.context.api.post<{ job: number }>("/api/import/start", {
-        files: files.map((it) => ({ upload: it.upload, name: it.recording })),
-        map,
-        options,
+        files: [...orders.values()],
       });
-      for (const file of files) [file.state, file.said] = ["importing", ""];
+      for (const file of orders.keys()) [file.state, file.said] = ["importing", ""];
       this.job.watch(job);
     } catch (error) {
       this.context.complain(error);
+    } finally {
+      this.isStarting = false;
+      this.show();
     }
-    this.show();
+  }
+
+  /** Nothing of a file that nobody can read, which says so; null where it has to be said first. */
+  private async mappingOf(file: TakenFile): Promise<Mapping | null | undefined> {
+    try {
+      return await this.mapping.mappingOf(file);
+    } catch (error) {
+      if (!(error instanceof ApiError) || error.status !== 400) throw error;
+      [file.state, file.said] = ["refused", error.message];
+      return undefined;
+    }
   }
 
   /** Each file says for itself what has become of it, also after the studio was started anew meanwhile. */

@@ -8,23 +8,29 @@ import type { TakenFile } from "./taken_file";
 
 const after_ms = 250; // of silence a changed mapping is tried
 
-/** How the columns of the files become channels: tried on the chosen file at once, kept as an import file. */
+/**
+ * How the columns of a file become channels: tried on the chosen file at once, kept as an import file. What a person has
+ * chosen for one file goes for those whose columns are called the same.
+ */
 export class MappingPanel {
   readonly root: HTMLElement;
   private readonly map: HTMLInputElement;
   private readonly options = new OptionsForm(() => this.soon());
   private readonly table = new PreviewTable((map) => {
     this.map.value = map;
-    this.touched = true;
     this.soon();
   });
   private readonly saved: HTMLSelectElement;
   private readonly name: HTMLInputElement;
   private readonly verdict = element("p", { class: "verdict", role: "status" });
+  private readonly confirm = button("Yes, these are the columns", () => {
+    this.keep();
+    void this.try();
+  });
   private readonly warnings = element("ul", { class: "warnings" });
   private readonly latest: Latest;
   private file: TakenFile | null = null;
-  private touched = false; // by a person: what the next file suggests does not take its place
+  private readonly byHand = new Map<string, Mapping>(); // by what the columns are called
   private timer = 0;
   /** The preview of the chosen file fits. */
   fits = false;
@@ -38,10 +44,7 @@ export class MappingPanel {
       class: "map",
       spellcheck: "false",
       maxlength: 4000,
-      input: () => {
-        this.touched = true;
-        this.soon();
-      },
+      input: () => this.soon(),
     });
     this.saved = element("select", { change: () => void this.load(this.saved.value) });
     this.name = element("input", {
@@ -66,7 +69,7 @@ export class MappingPanel {
         ),
         this.options.root,
       ),
-      this.verdict,
+      element("div", { class: "row" }, this.verdict, this.confirm),
       this.warnings,
       this.table.root,
     );
@@ -84,7 +87,7 @@ export class MappingPanel {
     ]);
   }
 
-  /** Tries the mapping on a file; one that nobody has touched gives way to what the file suggests. */
+  /** Tries the mapping of a file: its own, else that of its like, else what its columns suggest. */
   show(file: TakenFile | null): void {
     if (file === this.file) return;
     this.file = file;
@@ -94,25 +97,54 @@ export class MappingPanel {
       this.table.clear();
       return;
     }
-    if (!this.touched) this.map.value = "";
+    this.put(this.known(file) ?? { map: "", options: {} });
     void this.try();
+  }
+
+  /** How a file is to be read; null where nobody has said what its columns are, nor does any line of it. */
+  async mappingOf(file: TakenFile): Promise<Mapping | null> {
+    const known = this.known(file);
+    if (known) return known;
+    const preview = await this.ask(file, { map: "", options: {} });
+    file.columns = columnsOf(preview);
+    return this.known(file) ?? (isGuess(preview) ? null : { map: preview.suggested.map, options: {} });
+  }
+
+  private known(file: TakenFile): Mapping | undefined {
+    return file.mapping ?? this.byHand.get(file.columns);
+  }
+
+  private put({ map, options }: Mapping): void {
+    this.map.value = map;
+    this.options.value = options;
+  }
+
+  /** What is chosen now is a person's. */
+  private keep(): void {
+    const { file, mapping } = this;
+    if (!file) return;
+    file.mapping = mapping;
+    if (file.columns) this.byHand.set(file.columns, mapping);
   }
 
   private soon(): void {
     this.saved.value = "";
+    this.keep();
     clearTimeout(this.timer);
     this.timer = window.setTimeout(() => void this.try(), after_ms);
   }
 
   private async try(): Promise<void> {
-    const { file, mapping } = this;
+    const { file } = this;
     if (!file) return;
     let preview: Preview | undefined;
     try {
-      preview = await this.latest.ask(() => this.ask(file, mapping));
-      if (preview && mapping.map === "" && !this.touched) {
-        mapping.map = this.map.value = preview.suggested.map;
-        preview = await this.latest.ask(() => this.ask(file, mapping));
+      preview = await this.latest.ask(() => this.ask(file, this.mapping));
+      if (!preview) return;
+      file.columns = columnsOf(preview);
+      if (!file.mapping && this.map.value === "") {
+        this.put(this.known(file) ?? { map: preview.suggested.map, options: {} });
+        preview = await this.latest.ask(() => this.ask(file, this.mapping));
       }
     } catch (error) {
       if (this.context.signal.aborted || file !== this.file) return;
@@ -122,7 +154,7 @@ export class MappingPanel {
     if (!preview) return;
     this.tried(file, "");
     this.table.show(preview, this.map.value);
-    this.say(preview, preview.problem);
+    this.say(preview, isGuess(preview) && !this.known(file));
   }
 
   private ask(file: TakenFile, { map, options }: Mapping): Promise<Preview> {
@@ -132,6 +164,7 @@ export class MappingPanel {
   /** A map that is none is said here; a file that nobody can read, at the file. */
   private refuse(file: TakenFile, why: string): void {
     this.fits = false;
+    this.confirm.hidden = true;
     const isMap = why.startsWith("The mapping") || why.startsWith("'");
     this.verdict.className = "verdict wrong";
     this.verdict.textContent = why;
@@ -141,13 +174,16 @@ export class MappingPanel {
     this.tried(file, why);
   }
 
-  private say(preview: Preview, problem: string): void {
+  private say(preview: Preview, isGuessed: boolean): void {
+    const { problem } = preview;
     this.fits = problem === "" && preview.rows > 0;
-    this.verdict.className = this.fits ? "verdict" : "verdict wrong";
+    this.confirm.hidden = !this.fits || !isGuessed;
+    this.verdict.className = this.fits && !isGuessed ? "verdict" : "verdict wrong";
     const part = preview.is_whole ? "" : "of the first million bytes ";
     const rows = `${preview.rows.toLocaleString("en-GB")} rows ${part}over ${(preview.seconds ?? 0).toPrecision(4)} s`;
     const none = "Nothing would come in: no line has a number in each column that is chosen.";
-    this.verdict.textContent = problem || (this.fits ? `It fits: ${rows}.` : none);
+    const guess = `No line names the columns: what each is below, and in what unit, is a guess (${rows}).`;
+    this.verdict.textContent = problem || (this.fits ? (isGuessed ? guess : `It fits: ${rows}.`) : none);
     const said = [...preview.notes, ...preview.warnings];
     this.warnings.hidden = said.length === 0;
     this.warnings.replaceChildren(
@@ -159,9 +195,8 @@ export class MappingPanel {
     if (!id) return;
     try {
       const mapping = await this.context.api.get<Mapping>("/api/import/mapping", { id }, this.context.signal);
-      this.map.value = mapping.map;
-      this.options.value = mapping.options;
-      this.touched = true;
+      this.put(mapping);
+      this.keep();
       await this.try();
     } catch (error) {
       this.context.complain(error);
@@ -179,4 +214,13 @@ export class MappingPanel {
       context.complain(error);
     }
   }
+}
+
+/** What tells files of one kind from others. */
+function columnsOf({ columns }: Preview): string {
+  return JSON.stringify(columns.map((it) => it.heading));
+}
+
+function isGuess({ layout }: Preview): boolean {
+  return layout.header_line === 0;
 }

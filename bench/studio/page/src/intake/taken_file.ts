@@ -1,4 +1,4 @@
-import type { ImportResult } from "../api/intake";
+import type { ImportResult, Mapping } from "../api/intake";
 
 export type FileState = "sending" | "stopped" | "ready" | "refused" | "importing" | "done" | "failed";
 
@@ -13,6 +13,8 @@ export interface TakenFile {
   state: FileState;
   said: string; // what there is to say of it, in one line
   recording: string; // the name that its recording is to have
+  mapping: Mapping | null; // as a person has made or confirmed it; null: nobody has
+  columns: string; // what they are called, as one text; empty: not looked at yet
   result: (ImportResult & { state: "done" }) | null;
   sending: AbortController;
 }
@@ -30,6 +32,8 @@ export function takenFile(name: string, bytes: number, file: File | null): Taken
     state: "sending",
     said: "",
     recording: "",
+    mapping: null,
+    columns: "",
     result: null,
     sending: new AbortController(),
   };

@@ -169,6 +169,8 @@ export const tests = {
         [...it.split(",").slice(1).reverse(), "7", String(1783000 + 3 * i + (i % 3 === 0 ? 1 : 0))].join("\t"),
       );
     await choose(page, await source(studio, "unnamed.txt", `${numbers.join("\n")}\n`));
+    await until("that it is a guess is said", async () => (await page.textContent(".verdict")).includes("is a guess"));
+    await page.getByRole("button", { name: "Yes, these are the columns" }).click();
     await fits(page);
     expectEqual(await page.inputValue("input.map"), "time=4[ms],position=1[mm],force=2[N]", "what is suggested");
     expectEqual(await page.inputValue(channelOf(4)), "time", "the fourth of four unnamed columns");
@@ -219,6 +221,56 @@ export const tests = {
     await importAll(page);
     expect(existsSync(join(studio.folder, "good.h5")), "the good one has come in");
     expectNoComplaints(page, [/400/]);
+  },
+
+  async ReadsEachFileByItsOwnColumns({ browser, studio }) {
+    const page = await prepare({ browser, studio });
+    const rows = Array.from({ length: 200 }, (_, i) => [0.01 * i, 8 * Math.sin(0.05 * i) ** 2]);
+    const text = (head, of) => `${[head, ...rows.map((row) => of(...row).join(","))].filter(Boolean).join("\n")}\n`;
+    const files = [
+      await source(
+        studio,
+        "first.csv",
+        text("time [s],position [mm],force [N]", (t, x) => [t, x, 0.3 * x]),
+      ),
+      await source(
+        studio,
+        "second.csv",
+        text("time [s],force [N],position [mm]", (t, x) => [t, 0.3 * x, x]),
+      ),
+      await source(
+        studio,
+        "third.csv",
+        text("time [ms],position [m],force [mN]", (t, x) => [1e3 * t, x / 1e3, 300 * x]),
+      ),
+      await source(
+        studio,
+        "nameless.csv",
+        text("", (t, x) => [t, x, 0.3 * x]),
+      ),
+    ];
+    await choose(page, ...files);
+    await until("all have come", async () => (await page.locator(".file_list li.file_ready").count()) === 4);
+    await page.getByRole("button", { name: "Import 4 files" }).click();
+    await until("the one without names is asked about", async () =>
+      (await page.textContent(".verdict")).includes("is a guess"),
+    );
+    expect(!existsSync(join(studio.folder, "first.h5")), "nothing has come in before");
+    await choosesUnit(page, 2, "position", "mm");
+    await choosesUnit(page, 3, "force", "N");
+    await choosesUnit(page, 1, "time", "s");
+    await fits(page);
+    await page.getByRole("button", { name: "Import 4 files" }).click();
+    await until("all are imported", async () => (await page.locator(".file_list li.file_done").count()) === 4);
+    for (const name of ["first", "second", "third", "nameless"]) {
+      const { signals } = JSON.parse(studio.kerfOrThrow("inspect", `${name}.h5`, "--json").stdout);
+      expect(Math.abs(signals.position.most.value - 0.008) < 1e-4, `${name}: to ${signals.position.most.value} m`);
+      expect(
+        Math.abs(signals.force_measured.most.value - 2.4) < 0.03,
+        `${name}: to ${signals.force_measured.most.value} N`,
+      );
+    }
+    expectNoComplaints(page);
   },
 
   async TakesDroppedFilesFromAnyPage({ browser, studio }) {
