@@ -264,6 +264,8 @@ export const tests = {
     studio.record("cut.h5", 20);
     for (const name of ["cut.fit", "cut-3.fit"])
       studio.kerfOrThrow("fit", "cut.h5", "--models", "kelvin", "--folds", "2", "-o", name);
+    studio.record("other.h5", 10);
+    studio.kerfOrThrow("fit", "other.h5", "--models", "kelvin", "--folds", "2", "-o", "tuesday");
     await studio.serve();
     const page = await openPage(browser);
     const fitsOf = async (name) => {
@@ -275,6 +277,7 @@ export const tests = {
     expectEqual(await fitsOf("pork belly 1.h5"), [["pork-belly-1.fit"], "pork-belly-1.fit"], "of a name with blanks");
     expectEqual(await fitsOf("cut-2.h5"), [["cut-2.fit"], "cut-2.fit"], "of a recording called cut-2");
     expectEqual(await fitsOf("cut.h5"), [["cut.fit", "cut-3.fit"], "cut-3.fit"], "the newest is shown");
+    expectEqual(await fitsOf("other.h5"), [["tuesday"], "tuesday"], "of a fit with a name of its own");
     expectNoComplaints(page);
   },
 };

@@ -1,6 +1,6 @@
 // Recordings: the list, a recording over time at every zoom, its cycles as loops, several laid over each other.
 
-import { writeFile } from "node:fs/promises";
+import { mkdir, writeFile } from "node:fs/promises";
 import { join } from "node:path";
 
 import { audit } from "./accessibility.mjs";
@@ -182,7 +182,8 @@ export const tests = {
     await page.click("#tab_cycles");
     await page.waitForSelector(".inspection table");
     const warnings = await page.locator(".warnings li span:last-child").allTextContents();
-    expectEqual(warnings, verb.warnings, "warnings, which come first");
+    const inPageWords = (it) => it.replace(/'kerf prepare [^']*'/, "'Prepare' under Work");
+    expectEqual(warnings, verb.warnings.map(inPageWords), "warnings, which come first");
     const cells = await page
       .locator(".inspection .signals tbody tr")
       .last()
@@ -238,6 +239,37 @@ export const tests = {
     await page.click(".overlay_list button");
     await until("it is gone", async () => (await page.locator(".overlay_list li").count()) === 0);
     expectNoComplaints(page);
+  },
+
+  async TellsRecordingsOfOneNameApartAndAsksAgainAfterANetworkThatWasGone({ browser, studio }) {
+    for (const [folder, seed] of [
+      ["monday", 1],
+      ["tuesday", 2],
+    ]) {
+      await mkdir(join(studio.folder, folder));
+      const device = `sim:scissors?seed=${seed}`;
+      studio.kerfOrThrow("record", "--device", device, "--seconds", "3", "--virtual", "-o", `${folder}/cut.h5`);
+    }
+    const page = await prepare({ browser, studio });
+    const [own, other] = [
+      await studio.id("recordings", "monday/cut.h5"),
+      await studio.id("recordings", "tuesday/cut.h5"),
+    ];
+    await page.goto(studio.page(`recording/${own}/time?over=${other}`));
+    await until("both have a name", async () => {
+      const names = await page.locator(".time_legend").first().locator(".time_name").allTextContents();
+      return names.join(" ").includes("monday/cut") && names.join(" ").includes("tuesday/cut");
+    });
+    await page.route("**/api/recording/view*", (route) => route.abort("connectionreset"));
+    await page.waitForTimeout(1500); // what was on its way has come
+    let fetched = 0;
+    page.on("response", (it) => (fetched += it.url().includes("/api/recording/view") && it.ok() ? 1 : 0));
+    await page.getByRole("button", { name: "Show less, larger" }).click();
+    await page.waitForTimeout(500);
+    expectEqual(fetched, 0, "nothing comes through");
+    await page.unroute("**/api/recording/view*");
+    await until("it is asked for again", () => fetched >= 2);
+    expectNoComplaints(page, [/ERR_CONNECTION_RESET|Failed to load/]);
   },
 
   async IsAccessible({ browser, studio }) {

@@ -1,7 +1,7 @@
 // What is around every page: the address that holds what is seen, tabs, the list at the left, commands and keys, and how much
 // of the window is left to the data.
 
-import { copyFile, mkdir, readFile, rename, rm, utimes } from "node:fs/promises";
+import { copyFile, mkdir, readFile, rename, rm, utimes, writeFile } from "node:fs/promises";
 import { join } from "node:path";
 
 import { audit } from "./accessibility.mjs";
@@ -103,7 +103,9 @@ export const tests = {
       expect((await hash(page)).includes(key), `${await hash(page)} has ${key}`);
     }
     await page.waitForSelector("table.fits");
-    studio.kerfOrThrow("fit", "cut.h5", "--models", "kelvin", "-o", "elsewhere.fit");
+    studio.record("elsewhere.h5", 10);
+    studio.kerfOrThrow("fit", "elsewhere.h5", "--models", "kelvin", "-o", "elsewhere.fit");
+    await rm(join(studio.folder, "elsewhere.h5"));
     const another = await studio.id("files", "elsewhere.fit/fit.json");
     await page.goto(studio.page(`fits/${another}`));
     await page.waitForSelector("table.fits");
@@ -182,7 +184,13 @@ export const tests = {
     await page.waitForSelector("#tab_loop[aria-selected=true]");
     const file = join(studio.folder, "third.h5");
     await rename(file, `${file}.away`);
-    await says("is not in the folder any more, or cannot be read: what is shown was read before.");
+    await says("is not in the folder any more: what is shown was read before.");
+    const whole = await readFile(`${file}.away`);
+    await writeFile(file, whole.subarray(0, whole.length / 2));
+    await says("is damaged, and cannot be read any more: what is shown was read before.");
+    await until("one that is damaged stays in the list", async () =>
+      (await page.locator(".list_row", { hasText: "third" }).textContent()).includes("unreadable"),
+    );
     await rename(`${file}.away`, file);
     await until("one that is back is read, and nothing is said", () => page.locator("#notice_strip").isHidden());
     await page.waitForSelector(".tab_loop svg, .tab_loop canvas");
@@ -254,6 +262,16 @@ export const tests = {
     await page.keyboard.press("Enter");
     await isShown(page, "fits");
     await page.locator("h1").focus();
+    await page.keyboard.press("Control+k");
+    await until("forms of Work are known", async () => {
+      await page.fill("#palette input", "work prepare");
+      return (await page.locator("#palette li", { hasText: "Prepare" }).count()) > 0;
+    });
+    await page.keyboard.press("Enter");
+    await until("the form is open", async () => (await page.textContent("h1")).startsWith("Prepare"));
+    await page.goBack();
+    await isShown(page, "fits");
+    await page.locator("h1").focus();
     await page.keyboard.press("?");
     const keys = await page.locator("#help dt").allTextContents();
     for (const it of ["Ctrl + K", "Ctrl + B", "/", "1", "7", "Escape"]) expect(keys.includes(it), `${it} in ${keys}`);
@@ -281,6 +299,47 @@ export const tests = {
       const share = (box.width * box.height) / (1280 * 720);
       expect(share >= 0.7, `${tab}: ${(100 * share).toFixed(1)} % of the window`);
     }
+  },
+
+  async "every plot can have the whole window, and zero force stays within reach"({ browser, studio, screenshots }) {
+    const page = await prepare({ browser, studio });
+    studio.kerfOrThrow("fit", "cut.h5", "--models", "kelvin,exponential", "-o", "cut.fit");
+    studio.kerfOrThrow("chart", "cut.h5", "--laws", "kelvin", "-o", "cut.chart");
+    const drawing = ".enlarged :is(.xy_plot, .time_plots), .enlarged > .xy_plot";
+    for (const size of [
+      { width: 1280, height: 720 },
+      { width: 640, height: 360 },
+    ]) {
+      await page.setViewportSize(size);
+      for (const tab of ["time", "loop", "cycles", "law", "fits", "chart"]) {
+        await open(page, studio, "cut.h5", tab);
+        const opener = page.locator(".tab_panel .enlarge").first();
+        await opener.press("Enter");
+        const share = async () => {
+          const box = await page.locator(drawing).first().boundingBox();
+          return (box.width * Math.min(box.height, size.height - box.y)) / (size.width * size.height);
+        };
+        const least = size.height < 500 ? 0.6 : 0.7;
+        await until(`${tab} has ${least} of ${size.width} x ${size.height}`, async () => (await share()) >= least);
+        expectEqual(await opener.getAttribute("aria-pressed"), "true", "the button tells");
+        const isOnTop = await page
+          .locator("#force_bar button")
+          .last()
+          .evaluate((it) => {
+            const { x, y, width, height } = it.getBoundingClientRect();
+            return it.contains(document.elementFromPoint(x + width / 2, y + height / 2));
+          });
+        expect(isOnTop, "nothing lies over zero force");
+        await page.screenshot({ path: join(screenshots, `enlarged-${tab}-${size.width}.png`) });
+        await opener.press("f");
+        await until("it has its place again", async () => (await page.locator(".enlarged").count()) === 0);
+        expect(await opener.evaluate((it) => it === document.activeElement), "the focus stays where it was");
+      }
+    }
+    await page.locator(".tab_panel .enlarge").first().press("Enter");
+    await page.keyboard.press("Control+k");
+    await until("what is gone to lies above it", async () => (await page.locator(".enlarged").count()) === 0);
+    expectNoComplaints(page);
   },
 
   async "names as long as files may have break no page"({ browser, studio }) {

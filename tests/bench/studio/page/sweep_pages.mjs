@@ -1,6 +1,6 @@
 // Sweeps: heat maps held to what the merged file says, filters, brushes, and the address that brings all of it back.
 
-import { writeFile } from "node:fs/promises";
+import { readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
 
 import { audit } from "./accessibility.mjs";
@@ -80,6 +80,15 @@ export const tests = {
     expect(words.includes(`${found.known[at]} of ${found.computed[at]} computed cells have a number`), words);
     const value = Number(/kg: ([^;]+);/.exec(words)[1]);
     expect(Math.abs(value - found.value[at]) <= 0.01 * Math.abs(found.value[at]), `${value} for ${found.value[at]}`);
+    const csv = page.getByRole("button", { name: "Save CSV" });
+    const [download] = await Promise.all([page.waitForEvent("download"), csv.click()]);
+    const [heads, ...rows] = (await readFile(await download.path(), "utf8")).trim().split("\r\n");
+    expect(heads.startsWith("stiffness [N/m],delay [s],mass [kg],largest spectral_radius"), heads);
+    expectEqual(rows.length, found.value.length, "a row for each part");
+    const cells = rows[at].split(",").map(Number);
+    const there = found.axes.map((axis, k) => axis.values[[at % 15, 1, 0][k]]);
+    expectEqual(cells.slice(0, 5), [...there, found.value[at], found.computed[at]], "what the row is of");
+    await page.focus(".heat_maps canvas");
     await page.keyboard.press("PageDown"); // the next panel
     for (let i = 0; i < 20; ++i) await page.keyboard.press("ArrowRight");
     for (let i = 0; i < 3; ++i) await page.keyboard.press("ArrowUp");

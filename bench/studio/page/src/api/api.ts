@@ -164,3 +164,10 @@ export function traceView(bytes: ArrayBuffer): TraceView {
   }
   return { rowsPerColumn, rowsLookedAt, prepared, time, traces };
 }
+
+/** Nobody has answered, in time or at all. */
+export function isSilence(error: unknown): boolean {
+  return (
+    (error instanceof ApiError && error.status === 0) || (error instanceof DOMException && error.name === "AbortError")
+  );
+}

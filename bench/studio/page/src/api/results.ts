@@ -44,7 +44,7 @@ export interface LawFit {
 }
 
 export interface FitFile {
-  recordings: { name: string; axis: string; samples: number; left_out: number }[];
+  recordings: { name: string; uuid?: string; axis: string; samples: number; left_out: number }[];
   samples: number;
   settings: { folds: number; confidence: number };
   line_rmse: number;
@@ -85,6 +85,7 @@ export interface ChartPoint {
 
 export interface ChartFile {
   source: string;
+  recording?: string | null; // its UUID
   reference: string;
   rate_hz: number;
   jnd_n: number | null;

@@ -9,6 +9,8 @@ export interface WorkspaceRecording {
   modified: string; // ISO 8601
   partial: boolean; // not closed: being written, or left by a crash
   seconds?: number; // where the server knows it without opening the file
+  uuid?: string; // of the same
+  damaged?: boolean; // HDF5 can make nothing of it
 }
 
 export interface WorkspaceLaw {
@@ -45,6 +47,7 @@ export interface WorkspaceFile {
   name: string;
   kind: "fit" | "chart" | "choice" | "stability" | "suite" | "scene" | "protocol" | "study" | "device" | "sweep";
   modified: string; // ISO 8601
+  of?: string[]; // of a result: the UUIDs of its recordings, where it says them
 }
 
 export interface Workspace {

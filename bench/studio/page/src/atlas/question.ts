@@ -33,9 +33,16 @@ function filtersIn(text: string | null): Record<string, SweepFilter> {
   }
 }
 
-/** What the address says, and what is usual for whatever it does not say or the sweep does not have. */
-export function choiceIn(state: State, sweep: Sweep): Choice | null {
-  const table = sweep.tables.find((it) => it.name === state.get("table")) ?? sweep.tables[0];
+export function tableIn(state: State, sweep: Sweep): SweepTable | undefined {
+  return sweep.tables.find((it) => it.name === state.get("table")) ?? sweep.tables[0];
+}
+
+/**
+ * What the address says, and what is usual for whatever it does not say or the sweep does not have: of the results,
+ * `result` or the first.
+ */
+export function choiceIn(state: State, sweep: Sweep, result?: string): Choice | null {
+  const table = tableIn(state, sweep);
   if (!table) return null;
   const has = (name: string | null): name is string => table.columns.some((it) => it.name === name);
   const inputs = variedInputs(table).map((it) => it.name);
@@ -54,7 +61,7 @@ export function choiceIn(state: State, sweep: Sweep): Choice | null {
     x,
     y,
     by: by.filter((it) => it !== x && it !== y),
-    of: pick("of", results(table)[0]?.name),
+    of: pick("of", result ?? results(table)[0]?.name),
     statistic: statistics.some((it) => it === statistic) ? statistic : "mean",
     share: state.get("share") ?? "",
     where,

@@ -35,7 +35,7 @@ export class EarlierFits {
     const found = await this.latest
       .ask(async (signal) => {
         const workspace = await folder();
-        const fits = resultsOf(workspace, recording.name, ["fit"]);
+        const fits = resultsOf(workspace, recording, ["fit"]);
         return Promise.all(
           fits.map(async (fit) => {
             const ask = { id: recording.id, fit: fit.id };

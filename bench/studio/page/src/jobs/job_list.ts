@@ -60,7 +60,7 @@ class JobLine {
     this.bar.hidden = !isUnderWay(job);
     put(this.state, inWords(job));
     put(this.when, whenInWords(job));
-    this.root.className = `is_${job.state}`;
+    this.root.className = `is_${job.state === "done" && job.outcome ? "doubtful" : job.state}`;
     if (current) this.link.setAttribute("aria-current", "page");
     else this.link.removeAttribute("aria-current");
   }

@@ -14,6 +14,7 @@ export class Overlay {
   readonly popover: Popover;
   private readonly panel: RecordingOverlay;
   private readonly known = new Map<string, Recording>();
+  private readonly refused = new Set<string>(); // that cannot be laid over this one, and are not in the address
   private readonly latest: Latest;
   private over: { recording: Recording; name: string }[] = [];
   private ids: readonly string[] = [];
@@ -49,6 +50,8 @@ export class Overlay {
       });
     if (!found) return;
     this.over = found.filter((it) => it !== null);
+    if (ids.some((it) => this.refused.has(it)))
+      this.context.state.set({ [stateKeys.over]: ids.filter((it) => !this.refused.has(it)).join(",") || null });
     this.panel.show(this.over, this.alignment);
     this.popover.text = this.over.length > 0 ? `Laid over ${this.over.length}` : "Laid over";
     this.changed();
@@ -80,7 +83,8 @@ export class Overlay {
       this.known.set(id, recording);
       const why = whyNotOver(this.recording.about, recording);
       if (why) this.context.say(`${name} cannot be laid over it: ${why}.`);
-      return { recording, name };
+      if (why) this.refused.add(id);
+      return why ? null : { recording, name };
     } catch (error) {
       if (this.ids.includes(id)) this.context.complain(error);
       return null;

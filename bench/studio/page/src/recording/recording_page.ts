@@ -13,7 +13,7 @@ export class RecordingPage {
   private readonly strip: TabStrip;
   private readonly panel = element("div", { class: "tab_panel", role: "tabpanel", id: "tab_panel" });
   private recording: OpenRecording | null = null;
-  private found: "" | "changed" | "gone" = ""; // of the file, since it was read
+  private found: "" | "changed" | "damaged" | "gone" = ""; // of the file, since it was read
   private writers = 0; // of the file, within this page
   private end: () => void = () => {};
 
@@ -124,17 +124,18 @@ export class RecordingPage {
     const then = read.recordings.find((it) => it.id === id);
     const now = workspace.recordings.find((it) => it.id === id);
     const isOther = now && !now.partial && then && (now.modified !== then.modified || now.bytes !== then.bytes);
-    const found = !now ? "gone" : isOther ? "changed" : "";
+    const found = !now ? "gone" : now.damaged ? "damaged" : isOther ? "changed" : "";
     if (found === this.found) return;
-    const wasGone = this.found === "gone";
+    const wasAway = this.found === "gone" || this.found === "damaged";
     this.found = found;
-    if (found === "gone")
-      this.context.say(`${name} is not in the folder any more, or cannot be read: what is shown was read before.`);
+    if (found === "gone") this.context.say(`${name} is not in the folder any more: what is shown was read before.`);
+    else if (found === "damaged")
+      this.context.say(`${name} is damaged, and cannot be read any more: what is shown was read before.`);
     else if (this.isAtWork() && found === "changed")
       this.context.say(`${name} has changed in the folder: press R to read it anew.`);
     else
       void this.open().then(() =>
-        this.context.say(wasGone ? "" : `${name} has changed in the folder, and was read anew.`),
+        this.context.say(wasAway ? "" : `${name} has changed in the folder, and was read anew.`),
       );
   }
 

@@ -2,6 +2,7 @@ import type { InspectedCycle, InspectedSignal, Inspection, RecordingInspection }
 import { button, element, numberCell } from "../ui/dom";
 import { counted, plain, withUnit } from "../ui/numbers";
 import { tableMenu } from "../ui/plot/out/export_menu";
+import { inPageWords } from "../ui/page_words";
 
 const mostCycles = 300;
 
@@ -91,7 +92,7 @@ function warnings(inspection: Inspection): HTMLElement {
     "ul",
     { class: "warnings", "aria-label": "Warnings" },
     ...inspection.warnings.map((it) =>
-      element("li", {}, element("span", { "aria-hidden": "true" }, "⚠ "), element("span", {}, it)),
+      element("li", {}, element("span", { "aria-hidden": "true" }, "⚠ "), element("span", {}, inPageWords(it))),
     ),
   );
 }

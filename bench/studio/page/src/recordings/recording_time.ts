@@ -131,18 +131,14 @@ export class RecordingTime {
 
   /** With several recordings each trace has a plot, and each recording its colour and dash. */
   private plotsForEach(traces: readonly Trace[]): PlotOrder[] {
+    const names = shortNames(this.sources.map((it) => it.drawn.name));
+    const own = this.sources[0]!.drawn.recording;
     return traces.map((trace, k) => ({
       title: inWords(trace.name),
       titled: true,
-      lines: this.sources
-        .filter((it) =>
-          it.drawn.recording.traces.some((other) => other.name === trace.name && other.unit === trace.unit),
-        )
-        .map((it) => {
-          const line = it.lines[k]!;
-          line.name = shortName(it.drawn.name);
-          return line;
-        }),
+      lines: this.sources.flatMap((it, i) =>
+        traceOver(own, trace, it.drawn.recording) < 0 ? [] : [Object.assign(it.lines[k]!, { name: names[i]! })],
+      ),
     }));
   }
 
@@ -205,8 +201,15 @@ function legend(): HTMLElement {
 /** How many recordings can be told apart. */
 export const atMostDrawn = Math.min(5, looks.length);
 
-/** A file's name without its folder and ending, shortened in the middle. */
-function shortName(name: string): string {
-  const base = name.replace(/^.*\//, "").replace(/\.h5(\.partial)?$/, "");
-  return base.length <= 16 ? base : `${base.slice(0, 7)}…${base.slice(-8)}`;
+/** Files' names without their endings, shortened in the middle; with as much of their folders as tells them apart. */
+export function shortNames(names: readonly string[]): string[] {
+  const parts = names.map((it) => it.replace(/\.h5(\.partial)?$/, "").split("/"));
+  const lastOf = (count: number): string[] => parts.map((it) => it.slice(-count).join("/"));
+  const most = Math.max(...parts.map((it) => it.length));
+  let count = 1;
+  while (count < most && new Set(lastOf(count)).size < names.length) ++count;
+  const room = 16 + 6 * (count - 1);
+  return lastOf(count).map((it) =>
+    it.length <= room ? it : `${it.slice(0, room / 2 - 1)}…${it.slice(it.length - room / 2)}`,
+  );
 }

@@ -7,7 +7,8 @@ import type { Context } from "../ui/view";
 import { ChartPlot } from "./chart_plot";
 import { ChoicePanel } from "./choice_panel";
 import { LawPanel } from "./law_panel";
-import { byName, lawBeside, recordingsFor, resultName, stabilityInWords, stableWord } from "./names";
+import { lawBeside, recordingsFor, resultName, stabilityInWords, stableWord } from "./names";
+import { byAge } from "./of_recording/files";
 
 const microseconds = (ns: number | null): string => (ns === null ? "–" : (1e-3 * ns).toFixed(3));
 
@@ -91,7 +92,7 @@ export class ChartPage {
   ) {
     this.law = new LawPanel(context);
     this.plot = new ChartPlot(chart, (index) => this.open(index));
-    const recording = recordingsFor(workspace, chart.source)[0];
+    const recording = recordingsFor(workspace, chart.source, chart.recording ?? undefined)[0];
     const its = recording?.name.endsWith(`${chart.source}.h5`) ? recording : undefined;
     const choice = new ChoicePanel(
       context,
@@ -99,17 +100,13 @@ export class ChartPage {
       its ? () => order("/api/choose", { recording: its.id }) : null,
       (id, title) => void this.law.open(id, title),
     );
-    const chosen = workspace.files
-      .filter(
-        (it) =>
-          it.kind === "choice" &&
-          resultName(it)
-            .split("/")
-            .pop()
-            ?.replace(/(-\d+)?\.choice$/, "") === chart.source,
-      )
-      .sort(byName)
-      .pop();
+    const isChosenBy = (it: WorkspaceFile): boolean => {
+      if (it.of?.length && chart.recording) return it.of.includes(chart.recording);
+      const [name = ""] = resultName(it).split("/").slice(-1);
+      return name.replace(/(-\d+)?\.choice$/, "") === chart.source;
+    };
+    const choices = workspace.files.filter((it) => it.kind === "choice" && isChosenBy(it));
+    const chosen = choices.sort(byAge).pop();
     if (chosen) void choice.open(chosen);
     const unjudged = chart.points.filter((it) => it.stable === null).length;
     this.root = element(

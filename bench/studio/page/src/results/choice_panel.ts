@@ -6,6 +6,7 @@ import { tableMenu } from "../ui/plot/out/export_menu";
 import type { Context } from "../ui/view";
 import { feelButton } from "./law_panel";
 import { lawBeside, stableWord } from "./names";
+import { inPageWords } from "../ui/page_words";
 
 /** What speaks against the law that is named; nothing where it serves. */
 function doubt(of: ChoiceFile): string {
@@ -116,7 +117,7 @@ export class ChoicePanel {
         ),
       ),
       candidateTable(of.candidates, unit, doubt(of) || "taken"),
-      ...of.warnings.map((it) => element("p", { class: "quiet" }, it)),
+      ...of.warnings.map((it) => element("p", { class: "quiet" }, inPageWords(it))),
       element("p", { class: "quiet" }, whyOthersDiffer),
     );
   }

@@ -13,6 +13,7 @@ import { lawMenu } from "./law_menu";
 import { atMostCompared, lawColours, type ComparedLaw } from "./compared/compared_law";
 import { Comparison } from "./compared/comparison";
 import { heldOutFigure } from "./compared/held_out";
+import { inPageWords } from "../ui/page_words";
 
 const columns = 600;
 
@@ -22,7 +23,7 @@ function list(title: string, lines: readonly string[], kind = ""): HTMLElement |
     "details",
     { class: kind, open: kind === "warnings" },
     element("summary", {}, title),
-    element("ul", {}, ...lines.map((it) => element("li", {}, it))),
+    element("ul", {}, ...lines.map((it) => element("li", {}, inPageWords(it)))),
   );
 }
 
@@ -47,7 +48,7 @@ export class FitPage {
     const of = fit.recordings[0];
     const unit = fit.force_unit ?? "N";
     const blamed = fit.fits.find((it) => it.model === fit.choice.model)?.blame;
-    this.recording = recordingsFor(workspace, of?.name ?? "")[0]?.id ?? "";
+    this.recording = recordingsFor(workspace, of?.name ?? "", of?.uuid)[0]?.id ?? "";
     this.latest = new Latest(context.signal);
     this.table = new FitTable(
       fit,
@@ -64,7 +65,7 @@ export class FitPage {
         { class: "quiet" },
         `${of?.name ?? ""}, axis ${of?.axis ?? ""}: ${fit.samples} samples. ` +
           `JND ${plain(fit.jnd)} ${unit}; a straight line leaves ${plain(fit.line_rmse)} ${unit}. ` +
-          "Errors are over every row in contact; the segment editor's are over the averaged cycle, without what " +
+          "Errors are over every row in contact; those of the tab Law are over the averaged cycle, without what " +
           "cycles differ by.",
       ),
       this.table.root,
@@ -86,7 +87,8 @@ export class FitPage {
       compared,
       element("div", { class: "drawn_laws" }, this.drawn, errors),
     );
-    const first = fit.fits.find((it) => it.model === fit.choice.model) ?? fit.fits[0];
+    const named = (model: string | null): LawFit | undefined => fit.fits.find((it) => it.model === model);
+    const first = named(context.state.get(stateKeys.law)) ?? named(fit.choice.model) ?? fit.fits[0];
     const asked = context.state.get(stateKeys.laws)?.split(",") ?? [];
     const wanted = fit.fits.filter((it) => asked.includes(it.model)).map((it) => it.model);
     this.table.tick(wanted.length > 0 ? wanted : first ? [first.model] : []);
@@ -104,6 +106,7 @@ export class FitPage {
   /** A law that is looked at is drawn as well. */
   private pick(law: LawFit): void {
     this.look(law);
+    this.context.state.set({ [stateKeys.law]: law.model }, "replace");
     const { ticked } = this.table;
     if (ticked.includes(law.model)) return;
     this.table.tick([...ticked.slice(0, atMostCompared - 1), law.model]);
@@ -118,7 +121,7 @@ export class FitPage {
 
   private begin(name: string): void {
     const against = select(
-      recordingsFor(this.workspace, name).map((it) => ({ value: it.id, text: it.name })),
+      recordingsFor(this.workspace, name, this.fit.recordings[0]?.uuid).map((it) => ({ value: it.id, text: it.name })),
       this.recording,
       (id) => {
         this.recording = id;

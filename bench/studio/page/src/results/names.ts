@@ -20,10 +20,13 @@ export function lawBeside(workspace: Workspace, result: WorkspaceFile, name: str
 }
 
 /** The recordings that a result of that name may be of, likeliest first: results know their recording's stem. */
-export function recordingsFor(workspace: Workspace, stem: string): WorkspaceRecording[] {
+export function recordingsFor(workspace: Workspace, stem: string, uuid?: string): WorkspaceRecording[] {
   const whole = workspace.recordings.filter((it) => !it.partial);
-  const is = (it: WorkspaceRecording): boolean => it.name === `${stem}.h5` || it.name.endsWith(`/${stem}.h5`);
-  return [...whole.filter(is), ...whole.filter((it) => !is(it))];
+  const rank = (it: WorkspaceRecording): number => {
+    if (uuid && it.uuid === uuid) return 0;
+    return it.name === `${stem}.h5` || it.name.endsWith(`/${stem}.h5`) ? 1 : 2;
+  };
+  return whole.sort((one, other) => rank(one) - rank(other)); // which keeps the order of equals
 }
 
 /** Times of a file's name as the server gave them, newest last: "cut", "cut-2", "cut-10". */

@@ -1,7 +1,11 @@
 import type { Api } from "../api/api";
+import type { VerbForm } from "../api/jobs";
 import { watchDrops } from "../intake/dropped";
+import { slug } from "../jobs/verb_page";
+import { resultName } from "../results/names";
 import { element } from "../ui/dom";
 import type { PageContext, View } from "../ui/view";
+
 import type { Address } from "./address";
 import { Commands, type Command } from "./keys/commands";
 import { Help } from "./keys/help";
@@ -26,6 +30,7 @@ export class Shell {
   private shown: { view: View; id: string } | null = null;
   private end: () => void = () => {};
   private tabListeners: (() => void)[] = [];
+  private forms: readonly VerbForm[] = []; // of Work, once they are known
 
   constructor(
     private readonly api: Api,
@@ -42,9 +47,13 @@ export class Shell {
     this.router = new Router((now) => this.show(now));
     const help = new Help(byId("help_opener"), this.commands);
     const palette = new Palette(this.commands, () => this.places());
-    byId("palette_opener").addEventListener("click", () => palette.toggle());
+    const openPalette = (): void => {
+      palette.toggle();
+      void this.learnForms();
+    };
+    byId("palette_opener").addEventListener("click", openPalette);
     this.commands.offer([
-      { title: "Go to, do …", keys: "Ctrl+K", run: () => palette.toggle() },
+      { title: "Go to, do …", keys: "Ctrl+K", run: openPalette },
       { title: "Keys", keys: "?", run: () => help.toggle() },
       { title: "Show or hide the list", keys: "Ctrl+B", run: () => side.toggle() },
       {
@@ -76,10 +85,15 @@ export class Shell {
     location.hash = hash;
   }
 
-  /** Whatever is in the folder, for the palette. */
+  private async learnForms(): Promise<void> {
+    if (this.forms.length === 0) this.forms = await this.api.get<VerbForm[]>("/api/verbs").catch(() => []);
+  }
+
+  /** Whatever is in the folder, and what can be made of it, for the palette. */
   private places(): Command[] {
     const workspace = this.store.current;
     if (!workspace) return [];
+    const results = { fit: ["Fit", "fits"], chart: ["Chart", "chart"], choice: ["Choice", "chart"] } as const;
     const place = (group: string, title: string, hash: string): Command => ({
       group,
       title,
@@ -89,6 +103,12 @@ export class Shell {
       ...workspace.recordings.map((it) => place("Recording", it.name, `#/recording/${it.id}/time`)),
       ...workspace.files.filter((it) => it.kind === "study").map((it) => place("Study", it.name, `#/studies/${it.id}`)),
       ...workspace.sessions.map((it) => place("Session", it.name, `#/sessions/${it.id}`)),
+      ...workspace.files.flatMap((it) => {
+        if (it.kind !== "fit" && it.kind !== "chart" && it.kind !== "choice") return [];
+        const [group, page] = results[it.kind];
+        return [place(group, resultName(it), `#/${page}/${it.id}`)];
+      }),
+      ...this.forms.map((it) => place("Work", it.title, `#/work/${slug(it)}`)),
     ];
   }
 

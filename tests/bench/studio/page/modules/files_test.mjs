@@ -13,7 +13,14 @@ import { fileURLToPath } from "node:url";
 const here = dirname(fileURLToPath(import.meta.url));
 const page = resolve(process.argv[2] ?? join(here, "../../../../../bench/studio/page"));
 const { build } = createRequire(join(page, "package.json"))("esbuild");
-const modules = ["ui/numbers", "ui/plot/scale", "ui/plot/scaled", "ui/plot/out/csv_file", "ui/plot/out/download"];
+const modules = [
+  "ui/numbers",
+  "ui/page_words",
+  "ui/plot/scale",
+  "ui/plot/scaled",
+  "ui/plot/out/csv_file",
+  "ui/plot/out/download",
+];
 const bundle = await build({
   stdin: {
     contents: [...modules, "ui/figure_description"].map((it) => `export * from "./src/${it}";`).join("\n"),
@@ -56,6 +63,28 @@ test("curves over the same x share its column, with names before units", () => {
       "force cycle 1 [N]",
     ],
   );
+});
+
+test("sentences of the program are put in words of the page", () => {
+  const says = (text, here) => assert.equal(files.inPageWords(text), here);
+  says("1 of 10 cycles are left out (--cycles all takes them): cycle 10", "1 of 10 cycles are left out: cycle 10");
+  says("; 'kerf prepare --cycles 1-9' keeps the others", "; 'Prepare' under Work keeps the others");
+  says("; --contact POSITION says where", "; the option 'contact' POSITION says where");
+  says("a force of -3 N, 'a name' -- and more", "a force of -3 N, 'a name' -- and more");
+});
+
+test("names that stand below an axis stand in the table too, times do not", () => {
+  const x_ticks = [
+    { at: 1, name: "kelvin" },
+    { at: 2, name: "maxwell" },
+  ];
+  const curves = [files.lineOf("error", [1, null, 2], [0.1, null, 0.2])];
+  const [laws, errors] = files.figureColumns([files.figureOf("law", "error [N]", { curves, x_ticks })]);
+  assert.deepEqual(laws, { head: "law", cells: ["kelvin", "", "maxwell"] });
+  assert.deepEqual(errors.cells, [0.1, null, 0.2]);
+  const seconds = [{ at: 1, name: "1.0" }];
+  const [time] = files.figureColumns([files.figureOf("time [s]", "F [N]", { curves, x_ticks: seconds })]);
+  assert.deepEqual(time.cells, [1, null, 2]);
 });
 
 test("a map is a row for each cell, whichever way its cells follow each other", () => {

@@ -8,24 +8,31 @@ export function stemOf(name: string): string {
   return plain || "result";
 }
 
-/** The results of a recording among the files, newest last; those of its own folder alone where there are any. */
+/**
+ * The results of a recording among the files, newest last. A result says by UUID what it is of; one that does not goes
+ * by its name, and of these the ones of the recording's own folder alone where there are any.
+ */
 export function resultsOf(
   workspace: Workspace,
-  recording: string,
+  recording: { id: string; name: string },
   kinds: readonly WorkspaceFile["kind"][],
 ): WorkspaceFile[] {
-  const stem = stemOf(recording);
+  const uuid = workspace.recordings.find((it) => it.id === recording.id)?.uuid;
+  const stem = stemOf(recording.name);
   const stems = stemsOf(workspace);
-  const is = (it: WorkspaceFile): boolean => kinds.includes(it.kind) && stemOfResult(it, stems) === stem;
-  const all = workspace.files.filter(is).sort(byAge);
-  const near = all.filter((it) => folderOf(resultName(it)) === folderOf(recording));
-  return near.length > 0 ? near : all;
+  const all = workspace.files.filter((it) => kinds.includes(it.kind));
+  const byUuid = all.filter((it) => uuid && it.of?.includes(uuid));
+  const byName = all.filter((it) => !(uuid && it.of?.length) && stemOfResult(it, stems) === stem);
+  const near = byName.filter((it) => folderOf(resultName(it)) === folderOf(recording.name));
+  return [...byUuid, ...(near.length > 0 ? near : byName)].sort(byAge);
 }
 
-/** The recording that a result is of, where the folder has one of its name. */
+/** The recording that a result is of: by its UUID, else where the folder has one of its name. */
 export function recordingOf(workspace: Workspace, result: WorkspaceFile): WorkspaceRecording | undefined {
   const stem = stemOfResult(result, stemsOf(workspace));
-  const all = workspace.recordings.filter((it) => !it.partial && stemOf(it.name) === stem);
+  const closed = workspace.recordings.filter((it) => !it.partial);
+  const known = closed.filter((it) => it.uuid && result.of?.includes(it.uuid));
+  const all = known.length > 0 ? known : closed.filter((it) => stemOf(it.name) === stem);
   return all.find((it) => folderOf(it.name) === folderOf(resultName(result))) ?? all[0];
 }
 
@@ -40,9 +47,10 @@ export function stemOfResult(result: WorkspaceFile, stems: ReadonlySet<string>):
   return stems.has(whole) ? whole : whole.replace(/-\d+$/, "");
 }
 
-/** As the server names them: "cut.fit", "cut-2.fit", "cut-10.fit". */
-function byAge(one: WorkspaceFile, other: WorkspaceFile): number {
+/** By their times, and of one time as the server names them: "cut.fit", "cut-2.fit", "cut-10.fit". */
+export function byAge(one: WorkspaceFile, other: WorkspaceFile): number {
   const stem = (it: WorkspaceFile): { name: string } => ({ name: resultName(it).replace(/\.[a-z]+$/, "") });
+  if (one.modified !== other.modified) return one.modified < other.modified ? -1 : 1;
   return byName(stem(one), stem(other)) || byName(one, other);
 }
 

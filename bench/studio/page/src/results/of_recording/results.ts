@@ -66,7 +66,7 @@ export class ResultsOfRecording {
     try {
       const found = await this.latest.ask(async (signal) => {
         const workspace = await context.folder();
-        const files = resultsOf(workspace, this.recording.name, tab.kinds);
+        const files = resultsOf(workspace, this.recording, tab.kinds);
         const asked = context.state.get(tab.key);
         const file = asked === null ? usual(files, tab.kinds[0]) : this.asked(workspace, asked);
         const open = file ? await openResult(context, workspace, file, this.follow, signal) : null;

@@ -66,7 +66,7 @@ export function drawAxes(canvas: HTMLCanvasElement, across: Side, up: Side): Axe
   context.textBaseline = "bottom";
   context.fillText(titleOf(across), (left + right) / 2, height - 4);
   context.save();
-  context.translate(14, (top + bottom) / 2);
+  context.translate(8, (top + bottom) / 2);
   context.rotate(-Math.PI / 2);
   context.textBaseline = "middle";
   context.fillText(titleOf(up), 0, 0);

@@ -37,9 +37,12 @@ export function spectrumOf(values: ArrayLike<number>, period_s: number): Spectru
   return { step_hz: 1 / (count * period_s), amplitude };
 }
 
+/** What lies below is the drift over the stretch, which its window spreads over the first lines. */
+export const firstLine = 2;
+
 /** The line with the largest amplitude, but for the first two, which hold drift. */
 export function peakOf({ step_hz, amplitude }: Spectrum): { hz: number; amplitude: number } {
-  let best = 2;
-  for (let k = 2; k < amplitude.length; ++k) if (amplitude[k]! > amplitude[best]!) best = k;
+  let best = firstLine;
+  for (let k = firstLine; k < amplitude.length; ++k) if (amplitude[k]! > amplitude[best]!) best = k;
   return { hz: best * step_hz, amplitude: amplitude[best] ?? 0 };
 }

@@ -6,7 +6,7 @@ import { Latest } from "../../ui/latest";
 import { plain, withUnit } from "../../ui/numbers";
 import { palette } from "../../ui/palette";
 import { clipTo, drawAxes } from "./canvas_axes";
-import { peakOf, powerOfTwo, spectrumOf, type Spectrum } from "./spectrum";
+import { firstLine, peakOf, powerOfTwo, spectrumOf, type Spectrum } from "./spectrum";
 
 const every_ms = 400;
 const mostRows = 8192;
@@ -104,7 +104,7 @@ export class SpectrumView {
     if (this.reading.textContent !== text) this.reading.textContent = text;
     const axes = drawAxes(
       this.canvas,
-      { from: step_hz, to: step_hz * amplitude.length, unit: "Hz", name: "frequency", logarithmic: true },
+      { from: firstLine * step_hz, to: step_hz * amplitude.length, unit: "Hz", name: "frequency", logarithmic: true },
       { from: top * 1e-5, to: top, unit, name: `amplitude of ${inWords(this.trace.value)}`, logarithmic: true },
     );
     if (!axes) return;
@@ -113,7 +113,7 @@ export class SpectrumView {
     context.strokeStyle = palette().lines[0]!;
     context.lineWidth = 1.5;
     context.beginPath();
-    for (let k = 1; k < amplitude.length; ++k)
+    for (let k = firstLine; k < amplitude.length; ++k)
       context.lineTo(axes.x(k * step_hz), axes.y(Math.max(amplitude[k]!, top * 1e-6)));
     context.stroke();
     context.restore();

@@ -11,6 +11,7 @@ const keysOfParts: readonly (readonly [string, string])[] = [
   ["Shift + arrows, Page up, Page down", "plot: move along"],
   ["+ −", "plot: show less, more; wheel, two fingers or dragging too"],
   ["0", "plot: show all; a double click too"],
+  ["f", "plot: the whole window, and back"],
   ["Home, End", "plot: the cursor to the left end, right end"],
   ["↑ ↓, Enter", "list: from line to line, open"],
 ];

@@ -34,20 +34,21 @@ export const orders: readonly { value: Order; text: string }[] = [
   { value: "largest", text: "Largest" },
 ];
 
-/** Which kinds of result a recording of that stem has: "cut" -> fit, chart. */
-function resultsByStem(workspace: Workspace): Map<string, Set<string>> {
+/** Which kinds of result there are: by the UUID of the recording, of those that do not say it by the stem of its name. */
+function kindsOfResults(workspace: Workspace): (it: WorkspaceRecording) => string[] {
   const stems = stemsOf(workspace);
   const found = new Map<string, Set<string>>();
   for (const it of workspace.files) {
     if (it.kind !== "fit" && it.kind !== "chart" && it.kind !== "choice") continue;
-    const stem = stemOfResult(it, stems);
-    const of = found.get(stem) ?? new Set();
-    found.set(stem, of.add(it.kind));
+    for (const key of it.of?.length ? it.of : [stemOfResult(it, stems)]) {
+      const of = found.get(key) ?? new Set();
+      found.set(key, of.add(it.kind));
+    }
   }
-  return found;
+  return (it) => [...new Set([...(found.get(it.uuid ?? "") ?? []), ...(found.get(stemOf(it.name)) ?? [])])];
 }
 
-function recordingEntry(it: WorkspaceRecording, results: Map<string, Set<string>>): Entry {
+function recordingEntry(it: WorkspaceRecording, results: (it: WorkspaceRecording) => string[]): Entry {
   return {
     id: it.id,
     name: it.name,
@@ -57,7 +58,8 @@ function recordingEntry(it: WorkspaceRecording, results: Map<string, Set<string>
       return `${it.seconds === undefined ? bytes(it.bytes) : length(it.seconds)} · ${since(it.modified)}`;
     },
     get marks() {
-      return it.partial ? ["not closed"] : [...(results.get(stemOf(it.name)) ?? [])];
+      if (it.damaged) return ["unreadable"];
+      return it.partial ? ["not closed"] : results(it);
     },
     modified: it.modified,
     seconds: it.seconds ?? 0,
@@ -96,7 +98,7 @@ function studyEntry(file: WorkspaceFile, known: StudyEntry | undefined): Entry {
 export function entriesOf(kind: Kind, workspace: Workspace, studies: readonly StudyEntry[]): Entry[] {
   switch (kind) {
     case "recordings": {
-      const results = resultsByStem(workspace);
+      const results = kindsOfResults(workspace);
       return workspace.recordings.map((it) => recordingEntry(it, results));
     }
     case "studies":

@@ -168,8 +168,8 @@ export class SideList {
 const one: Record<Kind, string> = { recordings: "recording", studies: "study", sessions: "session" };
 const none: Record<Kind, () => (string | HTMLElement)[]> = {
   recordings: waysToARecording,
-  studies: () => ["No study yet: kerf study new makes one."],
-  sessions: () => ["No session yet: kerf session new makes one."],
+  studies: () => ["No study yet: ", element("a", { href: "#/studies" }, "how one is made"), "."],
+  sessions: () => ["No session yet: ", element("a", { href: "#/sessions" }, "how one is made"), "."],
 };
 
 /** What a file is called and where it lies: "cut" and "day_2"; of a study's "recording.h5" the other way round. */

@@ -65,6 +65,7 @@ export class Thumbnails {
   }
 
   private async fetch(entry: Entry): Promise<Thumbnail | null> {
+    if (entry.marks.includes("unreadable")) return null;
     try {
       return await this.api.get<Thumbnail>("/api/recording/thumbnail", { id: entry.id });
     } catch {

@@ -1,6 +1,6 @@
 import "./force_bar.css";
 
-import { ApiError, type Api } from "../../api/api";
+import { ApiError, isSilence, type Api } from "../../api/api";
 import type { LoopStatus } from "../../api/loop";
 import { forceStates, type ForceState } from "./force_states";
 import { OtherTabs } from "./other_tabs";
@@ -15,13 +15,6 @@ interface Act {
 const patience_ms = 2500;
 const look_ms = 300;
 const calm_ms = 700; // a second click of a double one, or a second thought, comes before
-
-/** Nobody has answered, in time or at all. */
-function isSilence(error: unknown): boolean {
-  return (
-    (error instanceof ApiError && error.status === 0) || (error instanceof DOMException && error.name === "AbortError")
-  );
-}
 
 /** Says what there is of force in the hand, on every page, and keeps the button for zero force at work. */
 export class ForceBar {

@@ -61,8 +61,7 @@ export function groundOf(
       stroke: style.hatch,
       width: 1.6 * style.frame,
     });
-  if (dotted)
-    shapes.push({ kind: "path", class: "dots", d: boxes.map((it) => dots(it, step)).join(""), fill: style.ink });
+  if (dotted) shapes.push({ kind: "path", class: "dots", d: dots(boxes, step), fill: style.ink });
   return shapes;
 }
 
@@ -77,12 +76,16 @@ function hatch({ x, y, width, height }: Box, step: number): string {
   return path;
 }
 
-function dots({ x, y, width, height }: Box, step: number): string {
+/** Dots of one grid for all boxes, each in the box that its middle is in; one in the middle of a sample between them. */
+function dots(boxes: readonly Box[], step: number): string {
   const r = 0.18 * step;
+  const dot = (cx: number, cy: number): string =>
+    `M${px(cx - r)} ${px(cy)}a${px(r)} ${px(r)} 0 1 0 ${px(2 * r)} 0a${px(r)} ${px(r)} 0 1 0 ${px(-2 * r)} 0Z`;
   let path = "";
-  for (let cx = Math.ceil((x + r) / step) * step; cx <= x + width - r; cx += step) {
-    for (let cy = Math.ceil((y + r) / step) * step; cy <= y + height - r; cy += step)
-      path += `M${px(cx - r)} ${px(cy)}a${px(r)} ${px(r)} 0 1 0 ${px(2 * r)} 0a${px(r)} ${px(r)} 0 1 0 ${px(-2 * r)} 0Z`;
+  for (const { x, y, width, height } of boxes) {
+    for (let cx = Math.ceil(x / step) * step; cx < x + width; cx += step)
+      for (let cy = Math.ceil((y + r) / step) * step; cy <= y + height - r; cy += step) path += dot(cx, cy);
   }
-  return path;
+  const [only] = boxes;
+  return path || !only || boxes.length > 1 ? path : dot(only.x + 0.5 * only.width, only.y + 0.5 * only.height);
 }

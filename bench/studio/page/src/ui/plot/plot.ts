@@ -5,6 +5,7 @@ import type { Figure, FigureCurve } from "../figure_description";
 import { plain } from "../numbers";
 import { onColours } from "../palette";
 import { draw } from "./draw";
+import { enlargeButton } from "./enlarge";
 import { frameOf, limitsOf, outline, type Frame, type Limits } from "./frame";
 import { gestures, pictureKey, type Along, type Movable, type Place } from "./gestures";
 import { legendItems } from "./legend";
@@ -108,9 +109,10 @@ export class Plot implements Movable {
     );
   }
 
-  /** Hands the figure out, as it is shown now. */
+  /** Enlarges the figure, and hands it out as it is shown now. */
   menu(): HTMLElement {
-    return exportMenu(() => ({ name: this.options.file ?? this.name, figures: this.handedOut() }));
+    const out = exportMenu(() => ({ name: this.options.file ?? this.name, figures: this.handedOut() }));
+    return this.options.small ? out : element("div", { class: "plot_tools" }, enlargeButton(), out);
   }
 
   private handedOut(): Figure[] {

@@ -1,3 +1,4 @@
+import { isSilence } from "../../api/api";
 import type { TraceView } from "../../api/recordings";
 import type { TimeRange } from "./time_range";
 
@@ -54,7 +55,8 @@ export class StretchLoader {
     const beside = screens * span * Math.min(1, Math.max(0, (maxColumns / columns - 1) / 2));
     const from = Math.max(range.first, range.from - beside);
     const to = Math.min(range.last, range.to + beside);
-    const wanted = Math.min(maxColumns, Math.max(1, Math.round((columns * (to - from)) / span)));
+    const share = span > 0 ? (to - from) / span : 1; // of one row there is no span
+    const wanted = Math.min(maxColumns, Math.max(1, Math.round(columns * share)));
     try {
       const view = await this.fetch(from, to, wanted, asked.signal);
       if (asked.signal.aborted) return;
@@ -67,7 +69,10 @@ export class StretchLoader {
       }
       if (screens === 0) this.prefetchWhenIdle(range, columns);
     } catch (error) {
-      if (!asked.signal.aborted && screens === 0) this.failed(error);
+      if (asked.signal.aborted || screens > 0) return;
+      // That nobody answers the bar says.
+      if (isSilence(error)) this.idle = window.setTimeout(() => void this.load(range, columns, 0), again_ms);
+      else this.failed(error);
     }
   }
 

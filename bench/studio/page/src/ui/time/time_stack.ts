@@ -4,6 +4,7 @@ import { button, element } from "../dom";
 import { plain, withUnit } from "../numbers";
 import { onColours } from "../palette";
 import { gestures, pictureKey } from "../plot/gestures";
+import { enlargeButton } from "../plot/enlarge";
 import { exportMenu } from "../plot/out/export_menu";
 import type { Sheet } from "../plot/out/sheet";
 import { MovableTime } from "./movable_time";
@@ -180,7 +181,12 @@ export class TimeStack {
         small("−", "Show more", () => this.range.zoom(2)),
         small("All", "Show all", () => this.range.whole()),
       ),
-      exportMenu(() => this.sheet()),
+      element(
+        "div",
+        { class: "plot_tools" },
+        enlargeButton(),
+        exportMenu(() => this.sheet()),
+      ),
     );
   }
 }

@@ -32,13 +32,19 @@ export function headOf(label: string, name: string): string {
 const same = (one: Numbers, other: Numbers): boolean =>
   one === other || (one.length === other.length && one.every((it, i) => it === other[i]));
 
+/** What x stands for, where names stand below it in place of numbers. */
+function namesOf({ x_ticks }: Figure, x: Numbers): Numbers | string[] {
+  const names = x.map((at) => (at === null ? "" : (x_ticks?.find((tick) => tick.at === at)?.name ?? "0")));
+  return names.some(Boolean) && names.every((it) => !it || Number.isNaN(Number(it))) ? names : x;
+}
+
 /** The numbers of figures: x once for all that share it, then what is drawn over it; maps as one row a cell. */
 export function figureColumns(figures: readonly Figure[]): CsvColumn[] {
-  const groups: { head: string; x: Numbers; columns: CsvColumn[] }[] = [];
+  const groups: { head: string; x: Numbers; cells: CsvColumn["cells"]; columns: CsvColumn[] }[] = [];
   const add = (figure: Figure, x: Numbers, columns: CsvColumn[]): void => {
     const known = groups.find((it) => it.head === figure.x_label && same(it.x, x));
     if (known) known.columns.push(...columns);
-    else groups.push({ head: figure.x_label, x, columns });
+    else groups.push({ head: figure.x_label, x, cells: namesOf(figure, x), columns });
   };
   figures.forEach((figure) => {
     for (const { x, low, high, label, name = label, extremes } of figure.areas ?? []) {
@@ -55,7 +61,7 @@ export function figureColumns(figures: readonly Figure[]): CsvColumn[] {
     }
   });
   return [
-    ...groups.flatMap(({ head, x, columns }) => [{ head, cells: x }, ...columns]),
+    ...groups.flatMap(({ head, cells, columns }) => [{ head, cells }, ...columns]),
     ...figures.flatMap(cellColumns),
   ];
 }

@@ -60,22 +60,23 @@ export function menu(
       said.textContent = error instanceof Error ? error.message : String(error);
     }
   };
-  const details = element(
-    "details",
-    { class: "out" },
-    element("summary", {}, title),
+  const body = element(
+    "div",
+    { tabindex: -1 }, // as in a Popover
+    ...more,
     element(
       "div",
-      { tabindex: -1 }, // as in a Popover
-      ...more,
-      element(
-        "div",
-        { class: "kinds" },
-        ...Object.entries(kinds).map(([name, make]) => button(name, () => void take(make)())),
-      ),
-      said,
+      { class: "kinds" },
+      ...Object.entries(kinds).map(([name, make]) => button(name, () => void take(make)())),
     ),
+    said,
   );
+  const details = element("details", { class: "out" }, element("summary", {}, title), body);
+  details.addEventListener("toggle", () => {
+    body.classList.remove("rightwards");
+    const edge = details.closest("main")?.getBoundingClientRect().left ?? 0;
+    body.classList.toggle("rightwards", body.getBoundingClientRect().left < edge);
+  });
   details.addEventListener("focusout", ({ relatedTarget }) => {
     if (relatedTarget instanceof Node && !details.contains(relatedTarget)) setTimeout(() => (details.open = false));
   });
