@@ -5,6 +5,7 @@
 #include <iterator>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <set>
 #include <span>
 #include <stdexcept>
@@ -71,6 +72,7 @@ class LawSelection {
     if (std::ranges::none_of(all, [](const Candidate& one) { return one.file.has_value(); }))
       throw std::invalid_argument(all.empty() ? "no law fits the axis" : all.front().why);
     choice_.effects = judge_effects(all, choice_.taken, choice_.jnd_n);
+    take_what_all_say(all);
     search_.finish();
     if (choice_.taken) {
       for (const Candidate& one : all) choice_.floor->lower_to(one.fitted_n);
@@ -179,6 +181,21 @@ class LawSelection {
     if (result.converged && !result.can_be_chosen())
       candidate.why = fmt::format("it fits worse than the mean of the force does (R2 {:.2g})", result.r2);
     candidate.within_jnd = result.can_be_chosen() && candidate.error_n <= choice_.jnd_n;
+  }
+
+  /// What every law is warned of is of the recording.
+  void take_what_all_say(const std::vector<Candidate>& all) {
+    std::optional<std::vector<std::string>> said;
+    std::size_t fitted = 0;
+    for (const Candidate& one : all) {
+      if (!one.fit) continue;
+      ++fitted;
+      const std::vector<std::string>& own = one.fit->result.warnings;
+      if (!said) said = own;
+      std::erase_if(*said,
+                    [&](const std::string& text) { return std::ranges::find(own, text) == own.end(); });
+    }
+    if (fitted > 1) choice_.warnings.insert(choice_.warnings.end(), said->begin(), said->end());
   }
 
   /// Laws that find the same segments, by what they are but for the number of these.

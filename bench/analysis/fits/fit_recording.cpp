@@ -228,6 +228,9 @@ Sources sources_of(std::span<const FitSource> all, RecordingFit& fit) {
     if (left_out > 0) fit.warnings.push_back(whose + rows_left_out(sources.series.back()));
     for (const std::string& doubt : doubts_of(sources.series.back(), fit.settings))
       fit.warnings.push_back(whose + doubt);
+    if (const std::string known = contact_by_the_force(source);
+        !known.empty() && fit.settings.intervals == fitting::Intervals::correlated)
+      fit.warnings.push_back(whose + known);
   }
   if (all.size() > 1) sources.together = pooled(sources.series);
   return sources;

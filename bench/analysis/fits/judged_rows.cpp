@@ -26,7 +26,8 @@ RowChoice choice_of(const json& settings, const schema::Recording& recording, co
   RowChoice choice;
   if (settings.value("rows", "contact") == "all") choice.rows = Counted::all;
   choice.cycles = parse_cycle_choice(settings.value("cycles", "good"));
-  if (choice.cycles.by == CycleChoice::By::listed && !has_the_cycles_of(recording, fits)) choice.cycles = {};
+  const bool are_there = recording.cycles && has_the_cycles_of(recording, fits);
+  if (choice.cycles.by == CycleChoice::By::listed && !are_there) choice.cycles = {};
   return choice;
 }
 

@@ -135,6 +135,69 @@ std::string begins_elsewhere(const AxisSeries& series, const fitting::FitOptions
       100.0 * onset, mend);
 }
 
+/// What gives way where the tool goes in and pushes back where it comes out is no tissue.
+std::string helps_going_in(const AxisSeries& series, const fitting::FitOptions& settings) {
+  constexpr double nearly_all = 0.9;  // of the work
+  double with = 0.0;
+  double against = 0.0;
+  double largest = 0.0;
+  for (std::size_t i = 1; i < series.force.size(); ++i) {
+    if (!series.counts.empty() && series.counts[i] == 0) continue;
+    const double way = series.penetration[i] - series.penetration[i - 1];
+    if (!(way > 0.0)) continue;
+    (series.force[i] < 0.0 ? with : against) += std::abs(series.force[i]) * way;
+    largest = std::max(largest, -series.force[i]);
+  }
+  if (!(largest > settings.jnd.threshold && with > nearly_all * (with + against))) return "";
+  const std::string& unit = settings.force_unit;
+  return fmt::format(
+      "the deeper the tool goes, the more the force helps it in, up to {:.3g} {}: is its sign turned? "
+      "--map 'force=COLUMN[-1 {}]' turns it",
+      largest, unit, unit);
+}
+
+/// Rows of an encoder that has slipped for a moment.
+std::string positions_that_jump(const AxisSeries& series) {
+  std::size_t found = 0;
+  std::size_t at = 0;
+  double highest = 0.0;
+  each_jump_and_back(series.penetration, [&](std::size_t row, double height) {
+    ++found;
+    if (height > highest) at = row;
+    highest = std::max(highest, height);
+  });
+  if (found == 0) return "";
+  const auto [least, most] = std::ranges::minmax_element(series.penetration);
+  return fmt::format(
+      "the position jumps there and back in {}, most of all at {:.6g} s by {:.2g} % of its range: laws make "
+      "wrong forces of it; take it out of the file that was imported",
+      found == 1 ? "one row" : fmt::format("{} rows", found), series.time_s[at],
+      100.0 * highest / (*most - *least));
+}
+
+/// Over a gap a law with a memory sees a straight line.
+std::string gaps_in_time(const AxisSeries& series) {
+  constexpr double periods = 20.0;
+  constexpr double least_s = 0.05;
+  const double period_s = median_period(series.time_s);
+  std::size_t found = 0;
+  std::size_t at = 0;
+  double longest = 0.0;
+  for (std::size_t i = 1; i < series.time_s.size(); ++i) {
+    const double gap_s = series.time_s[i] - series.time_s[i - 1];
+    if (!(gap_s > std::max(least_s, periods * period_s))) continue;
+    ++found;
+    if (gap_s > longest) at = i - 1;
+    longest = std::max(longest, gap_s);
+  }
+  if (found == 0) return "";
+  return fmt::format(
+      "rows are missing {}, for {:.3g} s from {:.6g} s on: a law with a memory goes along a straight line "
+      "there, errs for as long as it remembers, and is not chosen for it; fit what lies before or after "
+      "alone",
+      found == 1 ? "once" : fmt::format("{} times, the longest", found), longest, series.time_s[at]);
+}
+
 /// A force that was sampled more slowly than it was written.
 std::string held_force(const AxisSeries& series) {
   const auto held = rows_held(series.force);
@@ -178,10 +241,11 @@ std::string single_rows(const AxisSeries& series, const fitting::FitOptions& set
   const double error = std::sqrt(squares / counted);
   if (!(error > noteworthy * settings.jnd.at(fitting::rms_of(fitted_view(series))))) return "";
   return fmt::format(
-      "{} single rows stand out from both their neighbours, most of all at {:.6g} s by {:.3g} {}: they alone "
-      "make an error of {:.3g} {}; take them out of the file that was imported, or leave their cycles out "
-      "(--cycles)",
-      found, series.time_s[at], highest, settings.force_unit, error, settings.force_unit);
+      "{} out from both neighbours, most of all at {:.6g} s by {:.3g} {}: that alone makes an error of "
+      "{:.3g} {}; "
+      "take it out of the file that was imported, or leave its cycle out (--cycles)",
+      found == 1 ? "one row stands" : fmt::format("{} single rows stand", found), series.time_s[at], highest,
+      settings.force_unit, error, settings.force_unit);
 }
 
 /// By time, since rows that are not finite are no part of a series. Returns how many are left.
@@ -233,9 +297,11 @@ std::vector<std::string> doubts_of(const AxisSeries& series, const fitting::FitO
   std::vector<std::string> doubts;
   std::string of_the_force = nothing_felt(series, settings);
   if (of_the_force.empty()) of_the_force = nothing_changes(series, settings);
+  if (of_the_force.empty()) of_the_force = helps_going_in(series, settings);
   if (of_the_force.empty()) of_the_force = begins_elsewhere(series, settings);
   for (std::string& doubt :
-       std::array{std::move(of_the_force), held_force(series), single_rows(series, settings)}) {
+       std::array{std::move(of_the_force), positions_that_jump(series), gaps_in_time(series),
+                  held_force(series), single_rows(series, settings)}) {
     if (!doubt.empty()) doubts.push_back(std::move(doubt));
   }
   if (settings.folds >= 2 && !series.cycle.empty() && *std::ranges::max_element(series.cycle) == 1) {
@@ -244,6 +310,13 @@ std::vector<std::string> doubts_of(const AxisSeries& series, const fitting::FitO
         "next");
   }
   return doubts;
+}
+
+std::string contact_by_the_force(const FitSource& source) {
+  const double found = source.recording->axes.at(source.axis).contact_position;
+  if (!std::isfinite(found) || source.contact.position != found) return "";
+  return "penetration is counted from where the force was found to begin: intervals take that as exact, and "
+         "are too narrow by what it may be off";
 }
 
 std::string rows_left_out(const AxisSeries& series) {

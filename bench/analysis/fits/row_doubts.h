@@ -35,6 +35,9 @@ CountedRows mark_rows(const FitSource& source, const RowChoice& choice, double f
 [[nodiscard]] std::vector<std::string> doubts_of(const AxisSeries& series,
                                                  const fitting::FitOptions& settings);
 
+/// Where penetration is 0 because the force was seen to begin there: what intervals do not know. Else empty.
+[[nodiscard]] std::string contact_by_the_force(const FitSource& source);
+
 /// How many rows of a recording are not finite and are left out, in words; empty where none is.
 [[nodiscard]] std::string rows_left_out(const AxisSeries& series);
 

@@ -96,7 +96,13 @@ CountedRows mark_counted(AxisSeries& series, const schema::Recording& recording,
   const std::size_t rows = series.force.size();
   counted.contact = choice.rows == Counted::contact ? mark_contact(series, felt) : rows;
   counted.rows = counted.contact;
-  if (!has_cycles(recording, axis)) return counted;
+  if (!has_cycles(recording, axis)) {
+    if (choice.cycles.by == CycleChoice::By::listed)
+      throw std::invalid_argument(
+          fmt::format("--cycles: no cycles are kept along axis '{}' to take {} of; 'kerf segment' finds them",
+                      recording.axes.at(axis).name, in_words(choice.cycles)));
+    return counted;
+  }
   const std::vector<CycleVerdict> cycles = chosen(choice.cycles, recording, felt);
   counted.cycles = cycles.size();
   for (const CycleVerdict& cycle : cycles) {
@@ -106,6 +112,11 @@ CountedRows mark_counted(AxisSeries& series, const schema::Recording& recording,
   if (leave_out(series, cycles)) {
     counted.rows = static_cast<std::size_t>(std::ranges::count(series.counts, 1));
   } else {
+    if (choice.cycles.by == CycleChoice::By::listed)
+      throw std::invalid_argument(
+          fmt::format("--cycles: with {} fewer than {} rows are left to fit; take more of the {} cycles, or "
+                      "'--rows all'",
+                      in_words(choice.cycles), fewest_counted, cycles.size()));
     counted.left_out.clear();
     counted.none_is_good = true;
   }

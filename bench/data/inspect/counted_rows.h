@@ -58,8 +58,9 @@ struct CountedRows {
 /// Marks the rows of a series of an axis that count: those in contact, from `felt` on, within the cycles that
 /// were chosen. A cycle that is left out is none any more, and the others are numbered anew from 1, so that
 /// folds are of what is left. Cycles are chosen along their own axis alone.
-/// Where fewer than 20 rows would be left, all cycles count, which is said.
-/// @throws std::invalid_argument for a listed cycle that is not there.
+/// Where of good cycles fewer than 20 rows would be left, all count, which is said.
+/// @throws std::invalid_argument for listed cycles that are not there, or of which fewer than 20 rows are
+/// left.
 CountedRows mark_counted(AxisSeries& series, const schema::Recording& recording, std::size_t axis,
                          const RowChoice& choice, double felt);
 

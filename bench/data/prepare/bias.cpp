@@ -75,8 +75,10 @@ void check(const schema::Recording& recording, const std::vector<bool>& free, bo
   }
   if (drift && (first < fewest_idle_rows || last < fewest_idle_rows)) {
     throw std::invalid_argument(fmt::format(
-        "--drift: {} free rows in the first quarter of the time and {} in the last, {} are needed in each; "
-        "leave out --drift, or record some time without contact at both ends",
+        "--drift: {} rows in the first quarter of the time were found to be free, and {} in the last; {} are "
+        "needed in each. What drifts fast looks like a contact: say when nothing is touched (--free "
+        "A:B,C:D), or "
+        "record some time without contact at both ends",
         first, last, fewest_idle_rows));
   }
 }

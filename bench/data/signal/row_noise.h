@@ -3,6 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "signal/quantiles.h"
 
 namespace kerf::bench {
 
@@ -35,6 +40,31 @@ void each_single_row(const Values& values, const Counts& counts, double noise, c
     const double height = std::min(std::abs(over_last), std::abs(over_next));
     if (height > stands_out * noise && std::isfinite(height)) look(i, height);
   }
+}
+
+/// Calls `look` with the row, and its height over the nearer neighbour, of every row of a motion that jumps
+/// there and back: by more than stands_out times what all but a hundredth of its steps do, and twice what it
+/// does just before and after, which no turn of a tool does.
+template <typename Look>
+void each_jump_and_back(std::span<const double> position, const Look& look) {
+  constexpr std::size_t looked_at = 100'000;
+  const std::size_t stride = std::max<std::size_t>(1, position.size() / looked_at);
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < position.size(); i += stride) {
+    const double step = std::abs(position[i] - position[i - 1]);
+    if (std::isfinite(step)) steps.push_back(step);
+  }
+  const double usual = quantile(std::move(steps), 0.99);
+  if (!(usual > 0.0)) return;
+  const auto is_calm = [&](std::size_t row, std::size_t next, double height) {
+    return next >= position.size() || !(std::abs(position[row] - position[next]) > 0.5 * height);
+  };
+  each_single_row(
+      position, [](std::size_t) { return true; }, usual,
+      [&](std::size_t row, double height) {
+        if (is_calm(row + 1, row + 2, height) && (row < 2 || is_calm(row - 1, row - 2, height)))
+          look(row, height);
+      });
 }
 
 /// Standard deviation of white noise from row to row whose second differences have that median size: their

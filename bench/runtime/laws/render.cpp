@@ -11,8 +11,25 @@
 
 #include "laws/law_toml.h"
 #include "loop/command.h"
+#include "signal/row_noise.h"
 
 namespace kerf::bench {
+namespace {
+
+/// Of the row that is least engaged, but for such as jump there and back: they are of the encoder.
+double least_engaged(const schema::Recording& recording, std::size_t axis) {
+  std::vector<double> position;
+  for (std::size_t row = 0; row < recording.rows(); ++row)
+    position.push_back(recording.position[row * recording.dimensions() + axis]);
+  std::vector<std::size_t> jumps;
+  each_jump_and_back(position, [&](std::size_t row, double) { jumps.push_back(row); });
+  for (const std::size_t row : jumps) position[row] = std::numeric_limits<double>::quiet_NaN();
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const double one : position) smallest = std::fmin(smallest, one);
+  return std::isfinite(smallest) ? smallest : 0.0;
+}
+
+}  // namespace
 
 models::Contact contact_of(const schema::Recording& recording, std::size_t axis) {
   if (!recording.header.scene_toml.empty()) {
@@ -29,11 +46,7 @@ models::Contact contact_of(const schema::Recording& recording, std::size_t axis)
   if (recording.cycles && recording.cycles->axis == axis) {
     return {.position = recording.cycles->contact_position, .direction = recording.cycles->closing_direction};
   }
-  double smallest = recording.rows() > 0 ? std::numeric_limits<double>::infinity() : 0.0;
-  for (std::size_t row = 0; row < recording.rows(); ++row) {
-    smallest = std::fmin(smallest, recording.position[row * recording.dimensions() + axis]);
-  }
-  return {.position = smallest, .direction = 1.0};
+  return {.position = least_engaged(recording, axis), .direction = 1.0};
 }
 
 models::Law without_rendering_aids(const models::Law& law) {

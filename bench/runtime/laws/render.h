@@ -16,7 +16,7 @@ namespace kerf::bench {
 
 /// The contact of a recording: that of the tissue in its scene if it was simulated, else the onset that
 /// `kerf prepare` found, else from its cycles if it was segmented, else the smallest position with direction
-/// +1.
+/// +1, but for single rows that jump there and back.
 [[nodiscard]] models::Contact contact_of(const schema::Recording& recording, std::size_t axis);
 
 /// The law without the rendering aids of a BranchSelector (velocity filter, ramp band, reversal scaling):

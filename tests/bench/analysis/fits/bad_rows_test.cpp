@@ -6,6 +6,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <kerf/schema/recording.h>
 #include <kerf/schema/recording_writer.h>
@@ -54,6 +55,7 @@ class BadRows : public testing::Test {
 
   const test::TemporaryFolder folder_;
   const std::string file_ = folder_ / "r.h5";
+  std::string errors_;
 };
 
 double noise(std::size_t row) { return 0.01 * std::sin(12.9898 * static_cast<double>(row * row % 7919)); }
@@ -85,8 +87,61 @@ TEST_F(BadRows, ThatAreHeldAreSaidToBe) {
 
 TEST_F(BadRows, OfWhichOneDecidesAreNamed) {
   keep(with([](std::size_t row, double force) { return row == 1500 ? force - 45.0 : force + noise(row); }));
-  EXPECT_THAT(fit().errors,
-              HasSubstr("1 single rows stand out from both their neighbours, most of all at 1.5 s by"));
+  EXPECT_THAT(fit().errors, HasSubstr("one row stands out from both neighbours, most of all at 1.5 s by"));
+}
+
+TEST_F(BadRows, OfAForceWithItsSignTurnedAreAskedAbout) {
+  keep(with([](std::size_t row, double force) { return -force + noise(row); }));
+  const std::string doubt = "the more the force helps it in, up to ";
+  for (const Outcome& outcome : {fit(), choose(), chart()}) {
+    EXPECT_THAT(outcome.errors, HasSubstr(doubt));
+    EXPECT_THAT(outcome.errors, HasSubstr("is its sign turned? --map 'force=COLUMN[-1 N]' turns it"));
+  }
+  keep(with([](std::size_t row, double force) { return force + noise(row); }));
+  EXPECT_THAT(fit().errors, Not(HasSubstr(doubt)));
+}
+
+TEST_F(BadRows, OfAPositionThatJumpsSetNoContact) {
+  schema::Recording recording = test::punch();
+  const auto fitted_stiffness = [&] {
+    keep(recording);
+    const Outcome outcome = run_kerf(
+        {"fit", file_, "--models", "kelvin", "--no-folds", "--json", "--force", "-o", folder_ / "fits"});
+    EXPECT_EQ(outcome.exit_status, 0) << outcome.errors;
+    errors_ = outcome.errors;
+    return nlohmann::json::parse(outcome.output)["fits"][0]["parameters"]["parallel_stiffness"]["value"]
+        .get<double>();
+  };
+  const double whole = fitted_stiffness();
+  EXPECT_THAT(errors_, Not(HasSubstr("jumps")));
+  const double range = *std::ranges::max_element(recording.position);
+  recording.position[1203] -= 0.6 * range;
+  EXPECT_NEAR(fitted_stiffness() / whole, 1.0, 0.02);
+  EXPECT_THAT(errors_, HasSubstr("the position jumps there and back in one row, most of all at 1.203 s by"));
+}
+
+TEST_F(BadRows, OfAToolThatTurnsAtOnceJumpNowhere) {
+  schema::Recording recording = test::punch();
+  for (std::size_t row = 0; row < recording.position.size(); ++row) {  // at rest but for one knock
+    const double since = static_cast<double>(row) - 1500.0;
+    recording.position[row] = std::max(0.0, 0.004 - 1e-4 * since * since) + 1e-9 * noise(row);
+    recording.force_measured[row] = 300.0 * recording.position[row] + noise(row);
+  }
+  keep(recording);
+  EXPECT_THAT(fit().errors, Not(HasSubstr("jumps")));
+}
+
+TEST_F(BadRows, ThatAreMissingAreSaidToBeWhereALawRemembers) {
+  schema::Recording recording = test::punch();
+  for (std::size_t row = 900; row < recording.time.size(); ++row) recording.time[row] += 1.5;
+  keep(recording);
+  for (const Outcome& outcome : {fit(), choose(), chart()})
+    EXPECT_THAT(outcome.errors, HasSubstr("rows are missing once, for 1.5 s from 0.899 s on"));
+}
+
+TEST_F(BadRows, OfASensorAtItsEndAreSaidToBeWhereALawIsChosen) {
+  keep(with([](std::size_t, double force) { return std::min(force, 1.0); }));
+  EXPECT_THAT(choose().errors, HasSubstr("the sensor may be saturated there"));
 }
 
 TEST_F(BadRows, OfOneForceThroughoutAreRefused) {

@@ -146,6 +146,12 @@ TEST(CountedRows, OfAnotherAxisKnowNoCycles) {
   recording.cycles->axis = 1;
   AxisSeries series = series_of(recording);
   EXPECT_EQ(mark_counted(series, recording, 0, {}, felt_n).cycles, 0U);
+  const RowChoice two{.cycles = parse_cycle_choice("2-3")};
+  EXPECT_THAT([&] { mark_counted(series, recording, 0, two, felt_n); },
+              testing::ThrowsMessage<std::invalid_argument>(HasSubstr("no cycles are kept along axis")));
+  recording.cycles.reset();
+  EXPECT_THAT([&] { mark_counted(series, recording, 0, two, felt_n); },
+              testing::ThrowsMessage<std::invalid_argument>(HasSubstr("'kerf segment' finds them")));
 }
 
 /// Flags in a file, by the program.

@@ -84,7 +84,8 @@ TEST(Bias, DriftOfWhatBeganInContactIsRefusedToo) {
   Drifting made;
   for (std::size_t i = 0; i < 400; ++i) made.free[i] = false;
   EXPECT_THAT([&] { (void)remove_bias(made.recording, made.free, true); },
-              ThrowsMessage<std::invalid_argument>(HasSubstr("0 free rows in the first quarter")));
+              ThrowsMessage<std::invalid_argument>(
+                  HasSubstr("0 rows in the first quarter of the time were found to be free")));
 }
 
 TEST(Bias, NeedsFreeRowsAndAMeasuredForce) {
