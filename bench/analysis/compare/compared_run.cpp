@@ -38,7 +38,10 @@ std::vector<double> column_of(const std::vector<double>& rows, std::size_t axis,
 
 ComparedRun from_recording(const fs::path& file, const ComparedForce& which) {
   const schema::Recording recording = read_whole_recording(file);
-  const bool commanded = !recording.force_commanded.empty() && !which.measured;
+  // Of a device that nobody commanded to push the sensor's is the force.
+  const bool is_idle = !recording.force_measured.empty() &&
+                       std::ranges::all_of(recording.force_commanded, [](double one) { return one == 0.0; });
+  const bool commanded = !recording.force_commanded.empty() && !which.measured && !is_idle;
   const std::vector<double>& force = commanded ? recording.force_commanded : recording.force_measured;
   if (force.empty())
     throw std::invalid_argument(fmt::format("{}: it holds no {} force", file.string(),

@@ -71,14 +71,17 @@ RunComparison compare_runs(ComparedRun expected, ComparedRun got, const RunCompa
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(fmt::format("{} and {}: {}", result.expected, result.got, error.what()));
   }
-  if (result.runs.expected.rows() < 2)
-    throw std::invalid_argument(
-        fmt::format("{} and {}: fewer than two rows to compare", result.expected, result.got));
-  result.notes.insert(result.notes.end(), result.runs.notes.begin(), result.runs.notes.end());
   // What is missing is seen in the whole runs alone.
   const bool whole = by_tick && !paired;
   const compare::Series& before = whole ? expected.series : result.runs.expected;
   const compare::Series& after = whole ? got.series : result.runs.got;
+  // Beside each other lie rows of one moment.
+  if (const auto matched = whole ? compare::matched_rows(before, after) : std::nullopt)
+    result.runs = {.expected = rows_of(before, matched->expected), .got = rows_of(after, matched->got)};
+  if (result.runs.expected.rows() < 2)
+    throw std::invalid_argument(
+        fmt::format("{} and {}: fewer than two rows to compare", result.expected, result.got));
+  result.notes.insert(result.notes.end(), result.runs.notes.begin(), result.runs.notes.end());
   compare::Tolerance tolerance = options.tolerance;
   // Strokes of other speeds have no common time in which something could vibrate.
   if (options.align.by == compare::AlignBy::position && !tolerance.vibration)

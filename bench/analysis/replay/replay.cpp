@@ -17,6 +17,18 @@ std::string events_in_words(const AxisComparison& one) {
   return words;
 }
 
+/// Whether the rows follow each other by one period and whole multiples of it, but for digits that a text
+/// has not written.
+bool is_even(const Source& source) {
+  constexpr double of_a_period = 1e-3;
+  const std::vector<double>& time_s = source.recording.time;
+  for (std::size_t row = 1; row < time_s.size(); ++row) {
+    const double periods = (time_s[row] - time_s[row - 1]) / source.period_s;
+    if (!(std::abs(periods - std::round(periods)) < of_a_period)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 ThroughReplay replay_through(Source source, const std::vector<NamedLaw>& laws, const ThroughOptions& options,
@@ -26,7 +38,7 @@ ThroughReplay replay_through(Source source, const std::vector<NamedLaw>& laws, c
     replay.notes.push_back(gaps);
   if (options.bridge) source = bridged(source);
   replay.source = at_speed(source, options.speed);
-  if (!replay.source.on_grid)
+  if (!replay.source.on_grid && !is_even(replay.source))
     replay.notes.emplace_back(
         "the times are no whole ticks of one period, as a loop would give them; each step takes the time "
         "since the row before");

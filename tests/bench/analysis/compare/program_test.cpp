@@ -206,5 +206,29 @@ TEST_F(CompareProgram, RefusesWhatCannotBeCompared) {
   refused({at("torn.csv"), a}, "torn.csv:4: not a row of 2 numbers");
 }
 
+TEST_F(CompareProgram, ComparesWhatWasMeasuredWhereNothingWasCommanded) {
+  const auto measured = [&](const std::string& name, double gain) {
+    schema::Recording one = schema::read_recording(recording(name, [](double) { return 0.0; }));
+    for (const double t : one.time) one.force_measured.push_back(gain * force(t));
+    schema::write_recording(at(name), one);
+    return at(name);
+  };
+  const Outcome outcome = compare({measured("one.h5", 1.0), measured("other.h5", 1.5)});
+  EXPECT_EQ(outcome.exit_status, 1) << outcome.output << outcome.errors;
+  EXPECT_THAT(outcome.output + outcome.errors, HasSubstr("one.h5: the measured force"));
+}
+
+TEST_F(CompareProgram, LaysRowsOfOneMomentBesideEachOtherWhereSomeAreMissing) {
+  const std::string whole = recording("whole.h5");
+  schema::Recording part = schema::read_recording(whole);
+  for (auto* column : {&part.time, &part.position, &part.velocity, &part.force_commanded})
+    column->erase(column->begin() + 900, column->begin() + 950);
+  part.tick.erase(part.tick.begin() + 900, part.tick.begin() + 950);
+  schema::write_recording(at("part.h5"), part);
+  const Outcome outcome = compare({whole, at("part.h5")});
+  EXPECT_EQ(outcome.exit_status, 1);
+  EXPECT_THAT(outcome.output, AllOf(HasSubstr("50 samples are missing, at tick 900"), HasSubstr("RMS 0 N")));
+}
+
 }  // namespace
 }  // namespace kerf

@@ -2,8 +2,10 @@
 
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <string>
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -70,6 +72,9 @@ TEST_F(ReplayThrough, NotesWhatIsSpecialAboutTheRecording) {
   uneven.time[7] += 1e-5;
   EXPECT_THAT(replay_through(select_rows(uneven, {}, "uneven.h5"), laws(), {}, never).notes,
               ElementsAre(StartsWith("the times are no whole ticks of one period")));
+  schema::Recording written = test::sine_of_scissors();  // with as many digits as a text has
+  for (double& time_s : written.time) time_s = std::nextafter(time_s, 1e9);
+  EXPECT_THAT(replay_through(select_rows(written, {}, "written.h5"), laws(), {}, never).notes, IsEmpty());
 }
 
 TEST(ReplayPath, SaysHowFarOffItsPathTheDeviceWas) {
