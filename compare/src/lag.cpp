@@ -159,6 +159,21 @@ long best_shift(std::span<const double> expected, std::span<const double> got, s
   return best;
 }
 
+/// The whole shift that leaves least, from one near it: the peak of a correlation is not always there.
+long least_whole(const Shifted& shifted, long whole, long most) {
+  const auto left = [&](long ticks) { return shifted.line(static_cast<double>(ticks), Kernel::linear).left; };
+  double least = left(whole);
+  for (const long step : {1L, -1L}) {
+    while (std::abs(whole + step) <= most) {
+      const double next = left(whole + step);
+      if (next >= least) break;
+      least = next;
+      whole += step;
+    }
+  }
+  return whole;
+}
+
 /// The least difference within a tick of a whole shift, by the kernel that leaves least.
 struct FineLag {
   LagFit fit;
@@ -220,16 +235,9 @@ std::optional<LagFit> fit_lag(std::span<const double> expected, std::span<const 
     if (left < least) whole = one;
     least = std::min(least, left);
   }
-  // The peak of a correlation is near the least difference, not always at it.
-  for (const long step : {1L, -1L}) {
-    const auto most = static_cast<long>(used.most_ticks);
-    while (std::abs(whole + step) <= most) {
-      const double left = shifted.line(static_cast<double>(whole + step), Kernel::linear).left;
-      if (left >= least) break;
-      least = left;
-      whole += step;
-    }
-  }
+  const auto most = static_cast<long>(used.most_ticks);
+  whole = least_whole(shifted, whole, most);
+  least = shifted.line(static_cast<double>(whole), Kernel::linear).left;
   const FineLag raw = fine_lag(shifted, whole);
   LagFit best = raw.fit;
   double variance = shifted.variance(best);
@@ -239,9 +247,9 @@ std::optional<LagFit> fit_lag(std::span<const double> expected, std::span<const 
     const std::vector<double> smooth_e = smoothed(expected);
     const std::vector<double> smooth_g = smoothed(got);
     const Shifted calm(smooth_e, smooth_g, used);
-    best = fine_lag(calm, whole).fit;
-    slopes = calm.slopes(best);  // those of the noise are none of the signal's
-    best.kernel = Kernel::sinc;  // which keeps the noise as it is
+    best = fine_lag(calm, least_whole(calm, whole, most)).fit;  // which noise has moved by ticks
+    slopes = calm.slopes(best);                                 // those of the noise are none of the signal's
+    best.kernel = Kernel::sinc;                                 // which keeps the noise as it is
     variance = shifted.variance(best);
   }
   if (!(slopes > 0.0)) return {};

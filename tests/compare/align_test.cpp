@@ -132,5 +132,30 @@ TEST(Agreement, FindsNoLatencyInTheNoiseOfTwoSensors) {
   EXPECT_LT(std::abs(sum) / pairs, 0.6) << "nor a lag on the whole";
 }
 
+// Of a slow wave noise moves the least difference by ticks: the lag lies beyond the whole shift beside it.
+TEST(Align, FindsALagBetweenTicksUnderNoise) {
+  const auto slow = [](double t) { return 1.2 * (1.0 - std::cos(3.141592653589793 * t)); };
+  for (const double lag_s : {0.0053, 0.0137}) {
+    int beyond = 0;
+    int whole = 0;
+    constexpr int pairs = 20;
+    for (unsigned pair = 0; pair < pairs; ++pair) {
+      Series expected = timed(0.0, 1e-3, 6000, 0.0, slow);
+      Series got = timed(0.0, 1e-3, 6000, lag_s, slow);
+      const auto one = test::noise(6000, 0.02, 2 * pair + 1);
+      const auto other = test::noise(6000, 0.02, 2 * pair + 2);
+      for (std::size_t i = 0; i < one.size(); ++i) {
+        expected.channels[0].value[i] += one[i];
+        got.channels[0].value[i] += other[i];
+      }
+      const Lag lag = lag_between_runs(expected, got, 0.5).value();
+      beyond += std::abs(lag.seconds - lag_s) > 2.0 * lag.std_error_s ? 1 : 0;
+      whole += std::abs(lag.ticks - std::round(lag.ticks)) < 1e-6 ? 1 : 0;
+    }
+    EXPECT_LE(beyond, 4) << "of 20, of which 1 is expected";
+    EXPECT_EQ(whole, 0);
+  }
+}
+
 }  // namespace
 }  // namespace kerf::compare
