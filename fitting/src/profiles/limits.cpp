@@ -104,6 +104,8 @@ struct Question {
   double degrees_of_freedom = 0.0;
   double scale = 1.0;  ///< of a change that counts
   double unit = 1.0;   ///< of the rise of the sum of squares
+  /// Numbers that mean nothing where this one is none; asked for where it matters.
+  std::function<std::size_t()> without_meaning = [] { return std::size_t{0}; };
 };
 
 Question question_of(const models::ParameterInfo& info, const Eigen::VectorXd& at, Index k,
@@ -149,10 +151,36 @@ bool is_one_sided(const models::ParameterInfo& info) {
   return info.scale == models::Scale::logarithmic || info.lower == 0.0;
 }
 
+/// How likely so large an estimate is where there is nothing. What means nothing then is fitted to the noise
+/// as well: as many numbers are free.
 double p_of(double deviation, const Question& asked) {
+  constexpr double beyond_doubt = 1e-6;
   if (std::isnan(deviation)) return deviation;
-  const double both = two_sided_p(deviation, asked.degrees_of_freedom);
-  return is_one_sided(asked.info) ? 0.5 * both : both;
+  const double sides = is_one_sided(asked.info) ? 0.5 : 1.0;
+  const double alone = sides * two_sided_p(deviation, asked.degrees_of_freedom);
+  if (!(alone > beyond_doubt)) return alone;
+  const std::size_t others = asked.without_meaning();
+  return others == 0 ? alone : sides * two_sided_p(deviation, asked.degrees_of_freedom, 1 + others);
+}
+
+/// Whether none lies within the interval.
+bool may_be_none(double p_zero, const Question& asked) {
+  return is_one_sided(asked.info) &&
+         p_zero >= 0.5 * two_sided_p((1.0 + near_enough) * asked.quantile, asked.degrees_of_freedom);
+}
+
+/// How many other coordinates move nothing where one of them is none.
+std::size_t count_without_meaning(const Objective& objective, const Eigen::VectorXd& at,
+                                  const Eigen::MatrixXd& normal, Index k, double none) {
+  constexpr double nothing = 1e-6;  // of what it moved
+  Eigen::VectorXd there = at;
+  there[k] = none;
+  Sums sums;
+  if (!objective.evaluate(there, sums)) return 0;
+  std::size_t count = 0;
+  for (Index j = 0; j < at.size(); ++j)
+    count += j != k && normal(j, j) > 0.0 && sums.normal(j, j) <= nothing * nothing * normal(j, j) ? 1 : 0;
+  return count;
 }
 
 Limits by_wald(const Question& asked) {
@@ -167,6 +195,7 @@ Limits by_wald(const Question& asked) {
                                  ? asked.quantile / asked.half
                                  : std::abs(asked.best) * asked.quantile / asked.half;
     limits.p_zero = p_of(in_errors, asked);
+    if (may_be_none(limits.p_zero, asked)) limits.lower = std::min(limits.lower, 0.0);
   }
   return limits;
 }
@@ -194,14 +223,13 @@ std::optional<Limits> by_profile(Ridge ridge, const Objective& law, const Bounds
     is_so = is_so && ridge.is_so_by(law);
     return at && !ridge.came_to_an_end(ends) ? at : std::nullopt;
   };
-  double without_it = infinite;
   if (may_be_zero(asked.info)) {
     ridge.begin_anew();
-    without_it = ridge.deviation(none_on_scale(asked.info));
+    const double without_it = ridge.deviation(none_on_scale(asked.info));
     is_so = is_so && ridge.is_so_by(law);
     limits.p_zero = p_of(without_it, asked);
   }
-  const bool down_to_none = is_one_sided(asked.info) && without_it <= (1.0 + near_enough) * asked.quantile;
+  const bool down_to_none = may_be_none(limits.p_zero, asked);
   const auto upper = reached(step, bounds.upper[asked.k]);
   if (upper) limits.upper = from_search_scale(asked.info, *upper);
   if (down_to_none) {
@@ -284,6 +312,10 @@ std::vector<Limits> limits_of(const Problem& problem, const LawObjective& object
     questions.push_back(question_of(problem.parameters[coordinates[place].parameter], at, k, uncertainty));
     questions.back().scale = scale[place];
     questions.back().unit = unit_of_rise(uncertainty, hessian, sums, k);
+    if (smooth)
+      questions.back().without_meaning = [&, k, none = none_on_scale(questions.back().info)] {
+        return count_without_meaning(objective, at, sums.normal, k, none);
+      };
   }
   const auto bends_evenly = [&](const Question& asked) {
     return uncertainty.determined[static_cast<std::size_t>(asked.k)] &&

@@ -6,6 +6,7 @@
 #include <complex>
 #include <numeric>
 
+#include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <boost/math/statistics/univariate_statistics.hpp>
 #include <unsupported/Eigen/FFT>
@@ -50,10 +51,19 @@ double student_t(double confidence, double degrees_of_freedom) {
   return boost::math::quantile(distribution, 0.5 + 0.5 * confidence);
 }
 
-double two_sided_p(double deviation, double degrees_of_freedom) {
+double two_sided_p(double deviation, double degrees_of_freedom, std::size_t numbers) {
+  constexpr double as_good_as_known = 1e9;  // degrees of freedom
+  if (std::isnan(deviation)) return deviation;
   if (std::isinf(deviation)) return 0.0;
-  const boost::math::students_t distribution(std::max(1.0, degrees_of_freedom));
-  return 2.0 * boost::math::cdf(boost::math::complement(distribution, std::abs(deviation)));
+  if (numbers <= 1) {
+    const boost::math::students_t distribution(std::max(1.0, degrees_of_freedom));
+    return 2.0 * boost::math::cdf(boost::math::complement(distribution, std::abs(deviation)));
+  }
+  const auto count = static_cast<double>(numbers);
+  const double freedom = std::min(as_good_as_known, std::max(1.0, degrees_of_freedom));  // 1 of NaN
+  const boost::math::fisher_f distribution(count, freedom);
+  const double ratio = deviation * deviation / count;
+  return std::isfinite(ratio) ? boost::math::cdf(boost::math::complement(distribution, ratio)) : 0.0;
 }
 
 double robust_deviation(std::vector<double> sizes) {

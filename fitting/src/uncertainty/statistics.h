@@ -12,9 +12,10 @@ namespace kerf::fitting {
 /// Two-sided quantile of Student's t: the interval is estimate +- t * standard error.
 [[nodiscard]] double student_t(double confidence, double degrees_of_freedom);
 
-/// How likely a deviation as large as this is, of either sign, by Student's t.
+/// How likely a deviation as large as this is, of either sign, by Student's t; of several numbers at once
+/// that are free to make it, by Fisher's F.
 /// @param deviation in standard errors
-[[nodiscard]] double two_sided_p(double deviation, double degrees_of_freedom);
+[[nodiscard]] double two_sided_p(double deviation, double degrees_of_freedom, std::size_t numbers = 1);
 
 /// Standard deviation of normal noise by the median of its sizes, 1.4826 times that: a few that are
 /// no noise do not move it. 0 of none.

@@ -91,6 +91,23 @@ TEST(Limits, OfASpringThatIsNotThereBeginAtZero) {
   EXPECT_GE(included, 17) << "one-sided, 97.5 % of them: fewer once in 3,000 times";
 }
 
+// Without friction its presliding means nothing, and is fitted to the noise as well: that makes up for more
+// than the noise of one number.
+TEST(Limits, OfFrictionThatIsNotThereBeginAtZero) {
+  int included = 0;
+  int rejected = 0;
+  constexpr int studies = 60;
+  for (std::uint64_t seed = 1; seed <= studies; ++seed) {
+    const test::Strokes strokes(2000, 0.03, models::Law::make("precontact", std::vector{300.0, 1e-6}), seed);
+    const FitResult result = fit("friction", strokes.series(), {.folds = 0});
+    const Estimate& coulomb = estimate_of(result, "coulomb");
+    included += coulomb.lower == 0.0 || std::isinf(coulomb.lower) ? 1 : 0;
+    rejected += coulomb.p_zero < 0.05 ? 1 : 0;
+  }
+  EXPECT_GE(included, 54) << "97.5 % of 60: fewer once in 1,000 times";
+  EXPECT_LE(rejected, 9) << "5 % of 60: more once in 1,000 times";
+}
+
 TEST(Limits, OfASpringThatIsThereDoNot) {
   const FitResult fit = fitted("kelvin", test::kelvin(0.4), test::ramp_and_hold(4.0, 0.1), 0.02);
   EXPECT_EQ(estimate_of(fit, "parallel_stiffness").by, IntervalBy::wald);

@@ -1,5 +1,7 @@
 #include "uncertainty/statistics.h"
 
+#include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -41,6 +43,22 @@ TEST(StudentT, IsThatOfTheTables) {
   EXPECT_NEAR(student_t(0.99, 5.0), 4.032, 1e-3);
   EXPECT_NEAR(student_t(0.95, 1e6), 1.960, 1e-3);
   EXPECT_EQ(student_t(0.95, 0.0), student_t(0.95, 1.0)) << "no fewer than one degree of freedom";
+}
+
+// SciPy: 2 * t.sf(2, 10), f.sf(4 / 3, 3, 10).
+TEST(TwoSidedP, IsThatOfTOrOfFHoweverFarOut) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  EXPECT_NEAR(two_sided_p(2.0, 10.0), 0.07338803, 1e-7);
+  EXPECT_NEAR(two_sided_p(2.0, 10.0, 3), 0.3179711001, 1e-7);
+  for (const std::size_t numbers : {1U, 3U}) {
+    EXPECT_EQ(two_sided_p(0.0, 10.0, numbers), 1.0);
+    EXPECT_LT(two_sided_p(1e200, 10.0, numbers), 1e-100);
+    EXPECT_EQ(two_sided_p(infinite, 10.0, numbers), 0.0);
+    EXPECT_GT(two_sided_p(1.0, infinite, numbers), 0.1);
+    EXPECT_EQ(two_sided_p(1.0, std::nan(""), numbers), two_sided_p(1.0, 1.0, numbers))
+        << "freedom is not known";
+    EXPECT_TRUE(std::isnan(two_sided_p(std::nan(""), 10.0, numbers)));
+  }
 }
 
 }  // namespace
