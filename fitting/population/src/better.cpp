@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <stdexcept>
@@ -60,7 +61,9 @@ GroupEstimate summarise(std::span<const HeldOutError> errors, const GroupOptions
   std::vector<Estimate> estimates;
   for (const HeldOutError& error : errors)
     estimates.push_back({.value = error.error, .standard_error = {}, .specimen = error.specimen});
-  return estimate_group(estimates, options);
+  GroupEstimate mean = estimate_group(estimates, options);
+  if (mean.interval) mean.interval->lower = std::max(0.0, mean.interval->lower);
+  return mean;
 }
 
 std::vector<Comparison> better(std::span<const LawPair> pairs, const CompareOptions& options) {

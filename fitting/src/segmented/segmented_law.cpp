@@ -153,7 +153,9 @@ Solution solve_segments(const Problem& problem, const Samples& samples, const We
     for (const auto& force : curve.force) values.insert(values.end(), force.begin(), force.end());
     solution.converged = curve.converged;
     solution.iterations += curve.iterations;
-    solution.message = curve.optimal_on_grid ? "global optimum on the grid, polished" : "polished";
+    solution.message = !curve.converged        ? "the breakpoints did not come to rest"
+                       : curve.optimal_on_grid ? "global optimum on the grid, polished"
+                                               : "polished";
     const Values last = std::exchange(solution.values, Values(problem.runs, values));
     if (loss.kind == Loss::squares) break;
     double moved = last.empty() ? 1.0 : 0.0;

@@ -17,7 +17,7 @@ struct HeldOutError {
 };
 
 /// Mean of held-out errors over recordings and specimens, with its spreads: `estimate_group` of them as they
-/// are.
+/// are, with no interval below zero: that an error is not.
 [[nodiscard]] GroupEstimate summarise(std::span<const HeldOutError> errors, const GroupOptions& options = {});
 
 /// The errors of two laws on the same recordings, each named once.
