@@ -120,24 +120,40 @@ double error_of(const Points& points, const Fineness& fine, bool by_half) {
 constexpr std::size_t traces = 6;
 constexpr std::size_t features = 2 * traces;
 
+using Traces = std::array<double, features>;
+
 /// What a motion leaves behind: changes of the penetration and of its square, each fading by six times from
-/// five periods to a quarter of the recording, in powers of one number. Of every sample, a row each.
-std::vector<std::array<double, features>> traces_of(const Samples& samples) {
+/// five periods to a quarter of the recording, in powers of one number. Of every point, not of every sample:
+/// of very many these would take the memory.
+std::vector<Traces> traces_at(const Points& points, const Samples& samples) {
   const double quickest_s = 5.0 * samples.median_period_s;
   const double slowest_s = std::max(2.0 * quickest_s, 0.25 * samples.duration_s);
   const double deepest = std::max(std::abs(samples.least), std::abs(samples.most));
-  std::vector<std::array<double, features>> all(samples.size());
+  const auto fadings = [&](double period_s) {
+    std::array<double, traces> all{};
+    for (std::size_t k = 0; k < traces; ++k) {
+      const double share = static_cast<double>(k) / static_cast<double>(traces - 1);
+      all.at(k) = std::exp(-period_s / (quickest_s * std::pow(slowest_s / quickest_s, share)));
+    }
+    return all;
+  };
+  std::vector<Traces> all;
+  all.reserve(points.all.size());
+  double period_s = samples.median_period_s;
+  auto fading = fadings(period_s);
   for (const Run& run : samples.runs) {
-    for (std::size_t i = run.begin + 1; i < run.end; ++i) {
-      const double x = samples.motion[i].penetration / deepest;
-      const double before = samples.motion[i - 1].penetration / deepest;
-      for (std::size_t k = 0; k < traces; ++k) {
-        const double time_s = quickest_s * std::pow(slowest_s / quickest_s,
-                                                    static_cast<double>(k) / static_cast<double>(traces - 1));
-        const double fading = std::exp(-samples.period_s[i] / time_s);
-        all[i][k] = fading * all[i - 1][k] + x - before;
-        all[i][traces + k] = fading * all[i - 1][traces + k] + x * x - before * before;
+    Traces now{};
+    for (std::size_t i = run.begin; i < run.end; ++i) {
+      if (i > run.begin) {
+        if (samples.period_s[i] != period_s) fading = fadings(period_s = samples.period_s[i]);
+        const double x = samples.motion[i].penetration / deepest;
+        const double before = samples.motion[i - 1].penetration / deepest;
+        for (std::size_t k = 0; k < traces; ++k) {
+          now.at(k) = fading.at(k) * now.at(k) + x - before;
+          now.at(traces + k) = fading.at(k) * now.at(traces + k) + x * x - before * before;
+        }
       }
+      if (all.size() < points.all.size() && points.all[all.size()].sample == i) all.push_back(now);
     }
   }
   return all;
@@ -152,10 +168,8 @@ double remembered_in(const Points& points, const Samples& samples, const Finenes
     Matrix normal = Matrix::Zero();
     Vector score = Vector::Zero();
   };
-  const auto all = traces_of(samples);
-  const auto trace = [&](std::size_t i) {
-    return Eigen::Map<const Vector>(all[points.all[i].sample].data());
-  };
+  const std::vector<Traces> all = traces_at(points, samples);
+  const auto trace = [&](std::size_t i) { return Eigen::Map<const Vector>(all[i].data()); };
   std::vector<double> left(points.all.size(), 0.0);
   std::vector<Sums> sums(points.folds);
   for (std::size_t held = 0; held < points.folds; ++held) {
