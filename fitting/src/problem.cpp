@@ -160,7 +160,7 @@ bool forces_by_kernel(const Problem& problem, const Values& values, const Sample
   if (kernel == nullptr) return false;
   const std::vector<double> held(problem.parameters.size(), 0.0);
   for (std::size_t run = 0; run < samples.runs.size(); ++run) {
-    const auto [begin, end, noise] = samples.runs[run];
+    const auto [begin, end, noise, contact] = samples.runs[run];
     const RunView view{
         .motion = &samples.motion[begin], .period_s = &samples.period_s[begin], .count = end - begin};
     force.resize(end);
@@ -181,7 +181,7 @@ std::vector<double> rendered(const Problem& problem, const Values& values, const
   if (forces_by_kernel(problem, values, samples, force)) return force;
   for (std::size_t run = 0; run < samples.runs.size(); ++run) {
     const models::Law law = models::Law::make(problem.model, values[run], problem.law_options);
-    const auto [begin, end, noise] = samples.runs[run];
+    const auto [begin, end, noise, contact] = samples.runs[run];
     auto part = law.along(std::span(samples.motion).subspan(begin, end - begin),
                           std::span(samples.period_s).subspan(begin, end - begin));
     if (samples.runs.size() == 1) return part;

@@ -68,6 +68,9 @@ double check_columns(const Series& series) {
   if (!(series.noise_n >= 0.0) || !std::isfinite(series.noise_n)) {
     refuse("the noise of a recording must be a positive number, or 0 where it is not known");
   }
+  if (!(series.contact_error >= 0.0) || !std::isfinite(series.contact_error)) {
+    refuse("the error of a contact must be a positive number, or 0 where it is taken for exact");
+  }
   return largest;
 }
 
@@ -155,8 +158,10 @@ Samples check_series(std::span<const Series> recordings, const FoldOptions& opti
   Samples samples;
   for (const Series& series : recordings) {
     samples.largest_force = std::max(samples.largest_force, check_columns(series));
-    const Run run{
-        .begin = samples.size(), .end = samples.size() + series.force.size(), .noise_n = series.noise_n};
+    const Run run{.begin = samples.size(),
+                  .end = samples.size() + series.force.size(),
+                  .noise_n = series.noise_n,
+                  .contact_error = series.contact_error};
     Periods periods = periods_of(series.time_s);
     if (samples.runs.empty()) {
       samples.median_period_s = periods.median_s;
@@ -210,7 +215,8 @@ Samples thinned(const Samples& samples, std::size_t count) {
     return std::abs(period_s - usual_s) < 1e-9 * usual_s ? usual_s : period_s;
   };
   for (const Run& run : samples.runs) {
-    Run short_run{.begin = few.size(), .end = 0, .noise_n = run.noise_n};
+    Run short_run(run);
+    short_run.begin = few.size();
     for (std::size_t i = run.begin; i < run.end; i += step) {
       few.motion.push_back(samples.motion[i]);
       few.period_s.push_back(i == run.begin ? samples.period_s[i] : since(i - step, i));

@@ -13,7 +13,8 @@ namespace kerf::fitting {
 struct Run {
   std::size_t begin = 0;
   std::size_t end = 0;
-  double noise_n = 0.0;  ///< 0: not known
+  double noise_n = 0.0;        ///< 0: not known
+  double contact_error = 0.0;  ///< standard error of where the penetration is zero
 };
 
 /// A checked copy of the recordings in the form in which residuals are computed.

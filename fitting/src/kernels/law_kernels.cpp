@@ -7,7 +7,7 @@
 namespace kerf::fitting {
 
 RunView view_of(const Samples& samples, const Weights& weights, std::size_t run) {
-  const auto [begin, end, noise] = samples.runs[run];
+  const auto [begin, end, noise, contact] = samples.runs[run];
   return {.motion = &samples.motion[begin],
           .period_s = &samples.period_s[begin],
           .force = &samples.force[begin],

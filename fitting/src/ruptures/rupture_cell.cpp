@@ -29,7 +29,10 @@ RuptureParts::RuptureParts(const BreakingSamples& data, const RuptureRows& rows)
     double reference = 0.0;
     std::size_t begin = 0;
     const auto end_part = [&] {
-      samples.runs.push_back({.begin = begin, .end = samples.motion.size(), .noise_n = run.noise_n});
+      samples.runs.push_back({.begin = begin,
+                              .end = samples.motion.size(),
+                              .noise_n = run.noise_n,
+                              .contact_error = reference == 0.0 ? run.contact_error : 0.0});
       begin = samples.motion.size();
     };
     begin = samples.motion.size();

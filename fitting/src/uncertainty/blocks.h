@@ -17,6 +17,9 @@ struct Linearisation {
   std::vector<double> scale;  ///< of each parameter, what counts as a change as large as itself: 1 on a
                               ///< logarithmic scale, a typical size on a linear one; empty for ones
   Eigen::MatrixXd normal{};   ///< J^T J; empty: not formed yet
+  /// What the residuals change by if the penetration of each run is larger by one standard error of its
+  /// zero, times sqrt(weight); empty: all are taken for exact.
+  Eigen::VectorXd contact_shift{};
 };
 
 /// Rows from `begin` to before `end`.

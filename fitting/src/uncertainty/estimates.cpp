@@ -88,6 +88,8 @@ void estimate_tables(FitResult& result, const Problem& problem, const Samples& s
     result.warnings.push_back(std::to_string(unknown) + " of " + std::to_string(errors.size()) +
                               " points of the tables were visited once or never; they have no interval");
   }
+  if (std::ranges::any_of(samples.runs, [](const Run& run) { return run.contact_error > 0.0; }))
+    result.warnings.emplace_back("intervals of tables take where the penetration is zero for exact");
   const auto force = rendered(problem, solution.values, samples);
   std::vector<double> left;
   for (std::size_t i = 0; i < force.size(); ++i) {

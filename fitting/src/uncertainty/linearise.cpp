@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "infinite.h"
 #include "uncertainty/statistics.h"
@@ -21,10 +22,36 @@ double rms(const Eigen::Ref<const Eigen::VectorXd>& values) {
   return std::sqrt(values.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, values.size())));
 }
 
-/// The rows that count, times the roots of their weights.
+/// What the forces of the rows that count change by if the penetration of each run is larger by one standard
+/// error of its zero, by the difference over one either way; empty where all are exact.
+Eigen::VectorXd change_by_contact(const LawObjective& objective, const Problem& problem,
+                                  const Solution& solution) {
+  const Samples& samples = objective.samples();
+  if (std::ranges::all_of(samples.runs, [](const Run& run) { return run.contact_error == 0.0; })) return {};
+  const auto moved = [&](double errors) {
+    Samples there(samples);
+    for (const Run& run : there.runs) {
+      for (std::size_t i = run.begin; i < run.end; ++i)
+        there.motion[i].penetration += errors * run.contact_error;
+    }
+    return rendered(problem, solution.values, there);
+  };
+  const std::vector<double> deeper = moved(1.0);
+  const std::vector<double> higher = moved(-1.0);
+  const Weights& weights = objective.weights();
+  Eigen::VectorXd change(std::ranges::count_if(weights, [](double weight) { return weight != 0.0; }));
+  Eigen::Index kept = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (weights[i] != 0.0) change[kept++] = 0.5 * (deeper[i] - higher[i]);
+  }
+  return change;
+}
+
+/// The rows that count, times the roots of their weights; `change` is what change_by_contact() gives.
 Linearisation rows_of(const LawObjective& objective, const Eigen::VectorXd& at, const Samples& samples,
-                      const Weights& weights, const RobustLoss& loss) {
+                      const Weights& weights, const RobustLoss& loss, Eigen::VectorXd change) {
   Linearisation all;
+  all.contact_shift = std::move(change);
   if (!objective.rows(at, all.residuals, all.jacobian)) all.jacobian.setZero();
   Eigen::Index kept = 0;
   bool all_in_cycles = true;
@@ -42,6 +69,7 @@ Linearisation rows_of(const LawObjective& objective, const Eigen::VectorXd& at, 
           as_it_is ? 1.0 : std::sqrt(weights[i] * loss(weights[i] * residual * residual).slope);
       all.residuals[kept] = root * residual;
       if (!as_it_is) all.jacobian.row(kept) *= root;
+      if (!as_it_is && all.contact_shift.size() > 0) all.contact_shift[kept] *= root;
       ++kept;
     }
     all.run_ends.push_back(static_cast<std::size_t>(kept));
@@ -65,7 +93,8 @@ std::vector<double> searched_values(const Problem& problem, const Solution& solu
 
 Linearisation linearise(const LawObjective& objective, const Problem& problem, const Solution& solution,
                         const Samples& samples, const Weights& weights, const RobustLoss& loss) {
-  Linearisation linear = rows_of(objective, coordinates_of(problem, solution.values), samples, weights, loss);
+  Linearisation linear = rows_of(objective, coordinates_of(problem, solution.values), samples, weights, loss,
+                                 change_by_contact(objective, problem, solution));
   const double force_rms =
       rms(Eigen::Map<const Eigen::VectorXd>(samples.force.data(), static_cast<Eigen::Index>(samples.size())));
   linear.normal = gram(linear.jacobian);

@@ -169,6 +169,7 @@ void check(const Linearisation& linearisation) {
       (!linearisation.scale.empty() && linearisation.scale.size() != p) ||
       (!linearisation.run_ends.empty() && before != static_cast<std::size_t>(n)) ||
       (!linearisation.cycle_ends.empty() && linearisation.cycle_ends.back() != static_cast<std::size_t>(n)) ||
+      (linearisation.contact_shift.size() > 0 && linearisation.contact_shift.size() != n) ||
       !std::ranges::is_sorted(linearisation.cycle_ends)) {
     throw std::invalid_argument(
         "the residuals, their derivatives, the runs, the cycles and the scale must fit together");
@@ -222,6 +223,30 @@ void propagate_into(Uncertainty& result, const Blocks& blocks, const Noise& nois
   }
 }
 
+/// Adds what the parameters vary by since nobody knows exactly where the penetration is zero: theta follows
+/// the shift of a run by -(J^T J)^-1 J^T df/dx. What is known of that shift is no estimate from these rows,
+/// and asks for no degrees of freedom.
+void take_contact(Uncertainty& result, const Linearisation& linearisation, const Eigen::MatrixXd& basis) {
+  const Eigen::VectorXd& shift = linearisation.contact_shift;
+  if (shift.size() == 0) return;
+  const Eigen::VectorXd before = result.covariance.diagonal();
+  std::vector<std::size_t> ends = linearisation.run_ends;
+  if (ends.empty()) ends.push_back(static_cast<std::size_t>(shift.size()));
+  Index begin = 0;
+  for (const std::size_t end : ends) {
+    const Index count = static_cast<Index>(end) - begin;
+    const Eigen::VectorXd score =
+        linearisation.jacobian.middleRows(begin, count).transpose() * shift.segment(begin, count);
+    const Eigen::VectorXd change = basis * (basis.transpose() * score);
+    result.covariance += change * change.transpose();
+    begin += count;
+  }
+  for (Index k = 0; k < before.size(); ++k) {
+    const double larger = before[k] > 0.0 ? result.covariance(k, k) / before[k] : 1.0;
+    result.degrees_of_freedom[static_cast<std::size_t>(k)] *= larger * larger;
+  }
+}
+
 }  // namespace
 
 Eigen::MatrixXd correlation_of(const Eigen::MatrixXd& covariance) {
@@ -254,6 +279,7 @@ Uncertainty uncertainty_of(const Linearisation& linearisation, double confidence
     } else {
       propagate_into(result, blocks, noise);
     }
+    take_contact(result, linearisation, basis.determined);
     for (const double freedom : result.degrees_of_freedom)
       result.quantile.push_back(student_t(confidence, freedom));
     result.determined.assign(basis.lost.begin(), basis.lost.end());

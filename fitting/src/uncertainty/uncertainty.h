@@ -38,10 +38,14 @@ struct Uncertainty {
 ///
 /// Where there are eight cycles or more, each counts as one observation instead (cycles.h).
 ///
+/// Where the penetration is zero may have an error sigma of its own, the same for all rows of a run: what the
+/// parameters follow it by, d = (J^T J)^-1 J^T df/dx sigma, adds d d^T, by Student's t with the degrees of
+/// freedom of the sum (Welch-Satterthwaite).
+///
 /// Taken for granted: noise of one strength throughout, independent of the parameters; without cycles, what a
 /// law misfits is taken for noise with a long memory, and intervals are then rather too wide. It does not see
-/// an error in the position itself (the steps of an encoder), which least squares takes for exact, nor noise
-/// slower than about four recordings: no recording shows that.
+/// an error in the position itself from row to row (the steps of an encoder), which least squares takes for
+/// exact, nor noise slower than about four recordings: no recording shows that.
 ///
 /// What fewer rows than parameters, residuals that are not finite, or a parameter without effect leave open
 /// is told by infinite variances and by `determined`, never by a number.

@@ -27,6 +27,9 @@ struct Series {
   /// Whether a sample counts: laws run through all samples, and are fitted to and judged by these. Empty:
   /// all.
   std::span<const std::uint8_t> counts;
+  /// Standard error of the place where x is zero, the same for all samples: intervals allow for it, but those
+  /// of tables and of the line at which a law ruptures. 0: taken for exact [m or rad].
+  double contact_error = 0.0;
 };
 
 /// What a residual r costs, in units of a scale s: r^2 (least squares), or less for those far off.
