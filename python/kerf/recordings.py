@@ -29,6 +29,7 @@ class Axis(NamedTuple):
     lever: float  #: travel of the point where the force acts, per unit of position
     contact_position: float  #: where contact begins; NaN: unknown
     contact_direction: float  #: +1 or -1, into the tissue; NaN: unknown
+    contact_error: float = float("nan")  #: standard error of the contact position; NaN: unknown
 
 
 class Event(NamedTuple):

@@ -223,7 +223,7 @@ py::dict about_of(HeldRecording& recording) {
   py::list axes;
   for (const schema::Axis& one : about.axes)
     axes.append(py::make_tuple(text_of(one.name), text_of(one.position_unit), text_of(one.force_unit),
-                               one.lever, one.contact_position, one.contact_direction));
+                               one.lever, one.contact_position, one.contact_direction, one.contact_error));
   py::list events;
   for (const schema::Event& one : about.events)
     events.append(py::make_tuple(one.time_s, text_of(one.kind), text_of(one.text)));

@@ -63,6 +63,8 @@ std::map<std::string, std::string> facts_of(const schema::Recording& about) {
       facts[fmt::format("axis.{}.contact_position", axis.name)] = fmt::format("{}", axis.contact_position);
     if (!std::isnan(axis.contact_direction))
       facts[fmt::format("axis.{}.contact_direction", axis.name)] = fmt::format("{}", axis.contact_direction);
+    if (!std::isnan(axis.contact_error))
+      facts[fmt::format("axis.{}.contact_error", axis.name)] = fmt::format("{}", axis.contact_error);
   }
   std::erase_if(facts, [](const auto& fact) { return fact.second.empty(); });
   return facts;

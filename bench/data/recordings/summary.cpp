@@ -12,6 +12,7 @@
 #include <fmt/core.h>
 
 #include "clocks/time_stamp.h"
+#include "files/json_number.h"
 #include "segment/cycle_edit.h"
 
 namespace kerf::bench {
@@ -110,7 +111,8 @@ void add_header(nlohmann::ordered_json& summary, const schema::Recording& record
                                {"lever", axis.lever}});
     if (std::isnan(axis.contact_position)) continue;
     summary["axes"].back()["contact"] = {{"position", axis.contact_position},
-                                         {"direction", axis.contact_direction}};
+                                         {"direction", axis.contact_direction},
+                                         {"error", json_number(axis.contact_error)}};
   }
   summary["events"] = recording.events.size();
 }

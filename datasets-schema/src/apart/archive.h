@@ -22,7 +22,8 @@ concept Is = std::is_same_v<std::remove_const_t<T>, Value>;
 
 /// What goes over of a value, in this order; of one that is trivially copyable, its bytes do.
 auto fields(Is<Axis> auto& x) {
-  return std::tie(x.name, x.position_unit, x.force_unit, x.lever, x.contact_position, x.contact_direction);
+  return std::tie(x.name, x.position_unit, x.force_unit, x.lever, x.contact_position, x.contact_direction,
+                  x.contact_error);
 }
 auto fields(Is<Event> auto& x) { return std::tie(x.time_s, x.kind, x.text); }
 auto fields(Is<Channel> auto& x) { return std::tie(x.name, x.unit, x.values); }

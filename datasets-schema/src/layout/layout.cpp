@@ -71,6 +71,8 @@ const std::array attribute_table{
     Attribute{"/samples", "contact_directions", "float64", "D", optional,
               "+1 if the position grows into the tissue, -1 if it shrinks; NaN where unknown",
               &Axis::contact_direction},
+    Attribute{"/samples", "contact_errors", "float64", "D", optional,
+              "Standard error of `contact_positions`; NaN where unknown", &Axis::contact_error},
     Attribute{"/samples/velocity", "derived", "text", "", optional,
               "How it was derived from the position; absent if it was measured", &Header::velocity_derived},
     Attribute{"/samples/flags", "flag_masks", "uint32", "B", required, "The bits", std::span(flag_masks)},

@@ -58,7 +58,7 @@ inline void expect_same_samples(const schema::Recording& found, const schema::Re
     EXPECT_EQ(found.axes[i].force_unit, expected.axes[i].force_unit);
     EXPECT_EQ(found.axes[i].lever, expected.axes[i].lever);
     const auto contact = [](const schema::Axis& axis) {
-      return bits(std::vector<double>{axis.contact_position, axis.contact_direction});
+      return bits(std::vector<double>{axis.contact_position, axis.contact_direction, axis.contact_error});
     };
     EXPECT_EQ(contact(found.axes[i]), contact(expected.axes[i]));
   }

@@ -29,7 +29,8 @@ inline schema::Recording sample_recording(std::size_t rows = 5) {
                      .force_unit = "N·m",
                      .lever = 0.0369,
                      .contact_position = 0.25,
-                     .contact_direction = -1.0},
+                     .contact_direction = -1.0,
+                     .contact_error = 1e-3},
                     {.name = "x_s", .position_unit = "m", .force_unit = "N", .lever = 1.0}};
   schema::Channel channel{.name = "µ temperature", .unit = "K", .values = {}};
   schema::Channel second{.name = "a", .unit = "1", .values = {}};

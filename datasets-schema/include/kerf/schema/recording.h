@@ -35,6 +35,8 @@ struct Axis {
   double lever = 1.0;               ///< travel of the point where the force acts, per unit of position
   double contact_position = std::numeric_limits<double>::quiet_NaN();  ///< where contact begins; NaN: unknown
   double contact_direction = std::numeric_limits<double>::quiet_NaN();  ///< +1 or -1: into the tissue
+  double contact_error =
+      std::numeric_limits<double>::quiet_NaN();  ///< standard error of the contact position
 };
 
 /// Something that happened during a recording.
