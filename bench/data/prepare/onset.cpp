@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <stdexcept>
 
@@ -212,7 +213,7 @@ class Search {
   [[nodiscard]] ContactFound refined(const RowSpan& declared, std::size_t after_last) const;
   [[nodiscard]] std::vector<double> along_contact(const RowSpan& window, std::size_t declared) const;
   [[nodiscard]] std::size_t place_onset(ContactFound& contact, const RowSpan& window,
-                                        std::span<const double> force) const;
+                                        std::span<const double> force, double share) const;
 
   const ContactSignal& signal_;
   const OnsetOptions& options_;
@@ -242,9 +243,18 @@ ContactFound Search::refined(const RowSpan& declared, std::size_t after_last) co
     contact.onset_position = signal_.position[declared.begin];
   }
   // Where the noise happened to cross must not choose the rows: the second time the fitted ramp does.
-  window.end = place_onset(contact, window, along_contact(window, declared.begin));
-  window.end = std::min(std::max(window.end, declared.begin + 4), declared.end);
-  (void)place_onset(contact, window, along_contact(window, declared.begin));
+  const auto placed = [&](ContactFound& which, double share) {
+    const std::size_t clear_row = place_onset(which, window, along_contact(window, declared.begin), share);
+    window.end = std::min(std::max(clear_row, declared.begin + 4), declared.end);
+  };
+  placed(contact, 1.0);
+  placed(contact, 0.5);
+  ContactFound lower;
+  placed(lower, 1.0);
+  contact.bend = contact.onset_position - lower.onset_position;
+  const double variance = lower.onset_position_error * lower.onset_position_error -
+                          contact.onset_position_error * contact.onset_position_error;
+  contact.bend_error = variance < 0.0 ? 0.0 : std::sqrt(variance);  // NaN where either is
   if (!signal_.position.empty()) contact.travel = signal_.position[peak] - contact.onset_position;
   const auto first = std::lower_bound(signal_.time_s.begin(), signal_.time_s.end(), contact.onset_s);
   contact.rows.begin = std::min(static_cast<std::size_t>(first - signal_.time_s.begin()), declared.begin);
@@ -273,10 +283,10 @@ std::vector<double> Search::along_contact(const RowSpan& window, std::size_t dec
   return force;
 }
 
-/// Sets the onset from the rows of the window; returns the row at which the ramp found rises clear of the
-/// noise.
-std::size_t Search::place_onset(ContactFound& contact, const RowSpan& window,
-                                std::span<const double> force) const {
+/// Sets the onset from the rows of the window; returns the row at which the ramp found rises to a share of
+/// what is clear of the noise.
+std::size_t Search::place_onset(ContactFound& contact, const RowSpan& window, std::span<const double> force,
+                                double share) const {
   const std::span<const double> time_s(signal_.time_s.data() + window.begin, force.size());
   std::vector<double> position;
   if (!signal_.position.empty()) {
@@ -300,11 +310,11 @@ std::size_t Search::place_onset(ContactFound& contact, const RowSpan& window,
     const auto above = std::upper_bound(u.begin(), u.end(), hinge.corner) - u.begin();
     const auto i = static_cast<std::size_t>(
         std::clamp<std::ptrdiff_t>(above, 1, static_cast<std::ptrdiff_t>(u.size()) - 1));
-    const double share =
+    const double between =
         u[i] > u[i - 1] ? std::clamp((hinge.corner - u[i - 1]) / (u[i] - u[i - 1]), 0.0, 1.0) : 1.0;
     contact.onset_position = sign * hinge.corner;
     contact.onset_position_error = hinge.corner_error;
-    contact.onset_s = time_s[i - 1] + share * (time_s[i] - time_s[i - 1]);
+    contact.onset_s = time_s[i - 1] + between * (time_s[i] - time_s[i - 1]);
     contact.onset_error_s = hinge.corner_error / std::abs(net_travel) * (time_s.back() - time_s.front());
   } else {
     contact.onset_s = hinge.corner;
@@ -313,8 +323,9 @@ std::size_t Search::place_onset(ContactFound& contact, const RowSpan& window,
       contact.onset_position = interpolate(time_s, position, std::span(&hinge.corner, 1)).front();
     }
   }
-  const double clear =
-      std::min(std::max(3.0 * found_.threshold, 15.0 * found_.noise), 0.7 * contact.peak) / hinge.slope;
+  const double clear = share *
+                       std::min(std::max(3.0 * found_.threshold, 15.0 * found_.noise), 0.7 * contact.peak) /
+                       hinge.slope;
   std::size_t end = window.begin;
   while (end < contact.rows.end &&
          (one_direction ? sign * signal_.position[end] : signal_.time_s[end]) < hinge.corner + clear) {
@@ -328,6 +339,37 @@ std::size_t Search::place_onset(ContactFound& contact, const RowSpan& window,
 ContactsFound find_contacts(const ContactSignal& signal, const OnsetOptions& options) {
   check(signal);
   return Search(signal, options).run();
+}
+
+std::optional<ContactPlace> place_of(std::span<const ContactFound> contacts) {
+  const double of_hertz = 1.0 / (1.0 - std::exp2(-2.0 / 3.0));
+  std::vector<double> positions;
+  double travel = 0.0;
+  double squares = 0.0;
+  double bend = 0.0;
+  double bend_squares = 0.0;
+  double told = 0.0;  // contacts whose error is known
+  for (const ContactFound& contact : contacts) {
+    positions.push_back(contact.onset_position);
+    travel += contact.travel;
+    if (!std::isfinite(contact.onset_position_error) || !std::isfinite(contact.bend_error)) continue;
+    told += 1.0;
+    squares += std::pow(contact.onset_position_error, 2);
+    bend += contact.bend;
+    bend_squares += std::pow(contact.bend_error, 2);
+  }
+  if (travel == 0.0) return std::nullopt;
+  ContactPlace place{.position = median(positions), .direction = travel > 0.0 ? 1.0 : -1.0};
+  if (told == 0.0) return place;
+  const auto n = static_cast<double>(positions.size());
+  const double mean = std::accumulate(positions.begin(), positions.end(), 0.0) / n;
+  double scatter = 0.0;
+  for (const double position : positions) scatter += std::pow(position - mean, 2) / std::max(1.0, n - 1.0);
+  const double of_middle = n > 2.0 ? 0.5 * std::numbers::pi : 1.0;
+  const double by_chance = of_middle * std::max(squares / told, scatter) / n;
+  const double bent = std::max(0.0, std::pow(bend / told, 2) - bend_squares / told / told);
+  place.error = std::sqrt(by_chance + of_hertz * of_hertz * bent);
+  return place;
 }
 
 std::vector<bool> free_rows(std::span<const double> time_s, const ContactsFound& found,

@@ -228,23 +228,22 @@ class Run {
 
   /// The middle of the onsets becomes the axis' contact, where `kerf fit` begins to count.
   std::string place_contact(std::size_t axis) {
-    std::vector<double> positions;
-    double travel = 0.0;
-    for (const ContactFound& contact : done_.contacts->contacts) {
-      positions.push_back(contact.onset_position);
-      travel += contact.travel;
-    }
+    const auto place = place_of(done_.contacts->contacts);
     schema::Axis& about = recording().axes[axis];
-    if (travel == 0.0) {
+    if (!place) {
       done_.warnings.push_back(fmt::format(
           "{} moves in neither direction from the onsets to the peaks, so no contact position is stored",
           about.name));
       return {};
     }
-    about.contact_position = median(positions);
-    about.contact_direction = travel > 0.0 ? 1.0 : -1.0;
-    return fmt::format("; contact at {} {:.6g} {}, {}", about.name, about.contact_position,
-                       about.position_unit, travel > 0.0 ? "increasing" : "decreasing");
+    about.contact_position = place->position;
+    about.contact_direction = place->direction;
+    about.contact_error = place->error;
+    const std::string error =
+        std::isfinite(place->error) ? fmt::format(" (+-{:.2g} {})", place->error, about.position_unit) : "";
+    return fmt::format("; contact at {} {:.6g} {}{}, {}", about.name, about.contact_position,
+                       about.position_unit, error,
+                       about.contact_direction > 0.0 ? "increasing" : "decreasing");
   }
 
   void score() {

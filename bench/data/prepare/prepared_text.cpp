@@ -117,6 +117,8 @@ ordered_json to_json(const ContactsFound& found, const std::string& signal) {
                         {"onset_error_s", json_number(contact.onset_error_s)},
                         {"onset_position", json_number(contact.onset_position)},
                         {"onset_position_error", json_number(contact.onset_position_error)},
+                        {"bend", json_number(contact.bend)},
+                        {"bend_error", json_number(contact.bend_error)},
                         {"travel", contact.travel},
                         {"first_row", contact.rows.begin},
                         {"rows", contact.rows.end - contact.rows.begin},

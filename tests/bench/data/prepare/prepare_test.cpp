@@ -45,6 +45,8 @@ TEST(Prepare, StoresTheContactWhereTheFitLooksForIt) {
   const models::Contact contact = contact_of(recording, 0);
   EXPECT_NEAR(contact.position, 0.005, 2e-5);
   EXPECT_EQ(contact.direction, -1.0);
+  EXPECT_GT(recording.axes[0].contact_error, 1e-7);
+  EXPECT_LT(recording.axes[0].contact_error, 2e-5);
   EXPECT_EQ(std::ranges::count(recording.events, "contact", &schema::Event::kind), 2);
   EXPECT_EQ(std::ranges::count(recording.events, "release", &schema::Event::kind), 2);
   EXPECT_NEAR(prepared.bias->axes[0].offset, 0.4, 0.005);
