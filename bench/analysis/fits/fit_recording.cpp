@@ -40,7 +40,8 @@ struct Sources {
   [[nodiscard]] const AxisSeries& pool() const { return series.size() == 1 ? series.front() : together; }
   [[nodiscard]] std::vector<fitting::Series> views() const {
     std::vector<fitting::Series> views;
-    for (std::size_t i = 0; i < all.size(); ++i) views.push_back(fitted_view(series[i], all[i].noise_n));
+    for (std::size_t i = 0; i < all.size(); ++i)
+      views.push_back(fitted_view(series[i], all[i].noise_n, contact_error_of(all[i]).value_or(0.0)));
     return views;
   }
 };
@@ -220,6 +221,7 @@ Sources sources_of(std::span<const FitSource> all, RecordingFit& fit) {
                               .cycles_sha256 = cycles_along(source),
                               .axis = source.recording->axes[source.axis].name,
                               .contact = source.contact,
+                              .contact_error = contact_error_of(source),
                               .samples = rows,
                               .left_out = left_out,
                               .counted = counted.rows,
@@ -228,9 +230,18 @@ Sources sources_of(std::span<const FitSource> all, RecordingFit& fit) {
     if (left_out > 0) fit.warnings.push_back(whose + rows_left_out(sources.series.back()));
     for (const std::string& doubt : doubts_of(sources.series.back(), fit.settings))
       fit.warnings.push_back(whose + doubt);
-    if (const std::string known = contact_by_the_force(source);
-        !known.empty() && fit.settings.intervals == fitting::Intervals::correlated)
-      fit.warnings.push_back(whose + known);
+    if (const std::string unknown = contact_without_error(source);
+        !unknown.empty() && fit.settings.intervals == fitting::Intervals::correlated)
+      fit.warnings.push_back(whose + unknown);
+  }
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (std::size_t k = i + 1; k < all.size(); ++k) {
+      if (sources.series[i].time_s == sources.series[k].time_s &&
+          sources.series[i].force == sources.series[k].force)
+        fit.warnings.push_back(
+            fmt::format("{} and {} hold the same rows, which count twice: intervals are too narrow",
+                        all[i].name, all[k].name));
+    }
   }
   if (all.size() > 1) sources.together = pooled(sources.series);
   return sources;

@@ -62,6 +62,7 @@ struct FittedRecording {
   std::string cycles_sha256{};   ///< of the cycles along its axis, cycles_sha256_of(); empty without any
   std::string axis;
   models::Contact contact;
+  std::optional<double> contact_error{};  ///< standard error; none where nobody says
   std::size_t samples = 0;
   std::size_t left_out = 0;  ///< rows that are not finite
   std::size_t counted = 0;   ///< rows that count

@@ -8,14 +8,16 @@
 namespace kerf::bench {
 
 /// A series as a fit takes it. It must outlive what is returned.
-[[nodiscard]] inline fitting::Series fitted_view(const AxisSeries& series, double noise_n = 0.0) {
+[[nodiscard]] inline fitting::Series fitted_view(const AxisSeries& series, double noise_n = 0.0,
+                                                 double contact_error = 0.0) {
   return {.time_s = series.time_s,
           .penetration = series.penetration,
           .velocity = series.velocity,
           .force = series.force,
           .cycle = series.cycle,
           .noise_n = noise_n,
-          .counts = series.counts};
+          .counts = series.counts,
+          .contact_error = contact_error};
 }
 
 /// Verdicts by the JND of what an axis exerts.

@@ -175,27 +175,72 @@ std::string positions_that_jump(const AxisSeries& series) {
       100.0 * highest / (*most - *least));
 }
 
-/// Over a gap a law with a memory sees a straight line.
-std::string gaps_in_time(const AxisSeries& series) {
+/// Rows that are missing for so long that nobody knows how the tool went.
+struct Gap {
+  std::size_t before = 0;  ///< its last row
+  double seconds = 0.0;
+  RowSpan blind;  ///< the rows after it in which the tissue may remember what is missing
+};
+
+/// Tissue is taken to have forgotten where the tool is out of it, or nothing is felt.
+std::vector<Gap> gaps_of(const AxisSeries& series, double felt) {
   constexpr double periods = 20.0;
   constexpr double least_s = 0.05;
   const double period_s = median_period(series.time_s);
-  std::size_t found = 0;
-  std::size_t at = 0;
-  double longest = 0.0;
+  std::vector<Gap> gaps;
   for (std::size_t i = 1; i < series.time_s.size(); ++i) {
     const double gap_s = series.time_s[i] - series.time_s[i - 1];
     if (!(gap_s > std::max(least_s, periods * period_s))) continue;
-    ++found;
-    if (gap_s > longest) at = i - 1;
-    longest = std::max(longest, gap_s);
+    std::size_t end = i;
+    while (end < series.force.size() && series.penetration[end] > 0.0 && std::abs(series.force[end]) > felt)
+      ++end;
+    gaps.push_back({.before = i - 1, .seconds = gap_s, .blind = {.begin = i, .end = end}});
   }
-  if (found == 0) return "";
-  return fmt::format(
-      "rows are missing {}, for {:.3g} s from {:.6g} s on: a law with a memory goes along a straight line "
-      "there, errs for as long as it remembers, and is not chosen for it; fit what lies before or after "
-      "alone",
-      found == 1 ? "once" : fmt::format("{} times, the longest", found), longest, series.time_s[at]);
+  return gaps;
+}
+
+/// Rows that count and in which the tissue may remember what is missing count no more, but where that were
+/// half of them or more.
+void leave_out_what_remembers_gaps(AxisSeries& series, double felt, CountedRows& counted) {
+  const std::vector<Gap> gaps = gaps_of(series, felt);
+  if (gaps.empty()) return;
+  std::vector<std::uint8_t> counts(series.counts);
+  counts.resize(series.force.size(), 1);
+  for (const Gap& gap : gaps) {
+    const auto begin = counts.begin() + static_cast<std::ptrdiff_t>(gap.blind.begin);
+    std::fill(begin, begin + static_cast<std::ptrdiff_t>(gap.blind.end - gap.blind.begin), std::uint8_t{0});
+  }
+  const auto left = static_cast<std::size_t>(std::ranges::count(counts, 1));
+  if (2 * left < counted.rows || left < fewest_counted) return;
+  series.counts = std::move(counts);
+  counted.rows = left;
+}
+
+/// Over a gap a law with a memory sees a straight line.
+std::string gaps_in_time(const AxisSeries& series, double felt) {
+  const std::vector<Gap> gaps = gaps_of(series, felt);
+  if (gaps.empty()) return "";
+  const Gap& longest = *std::ranges::max_element(gaps, {}, &Gap::seconds);
+  std::size_t blind = 0;
+  std::size_t counted = 0;
+  for (const Gap& gap : gaps) {
+    blind += gap.blind.end - gap.blind.begin;
+    for (std::size_t row = gap.blind.begin; row < gap.blind.end; ++row)
+      counted += series.counts.empty() || series.counts[row] != 0 ? 1 : 0;
+  }
+  const std::string missing =
+      fmt::format("rows are missing {}, for {:.3g} s from {:.6g} s on",
+                  gaps.size() == 1 ? "once" : fmt::format("{} times, the longest", gaps.size()),
+                  longest.seconds, series.time_s[longest.before]);
+  if (blind == 0) return missing + "; the tool is out of the tissue after that";
+  if (counted == 0)
+    return fmt::format(
+        "{}: nobody knows what tissue remembers of it, and the {} rows until the tool is free again count "
+        "neither in fits nor in errors (--rows all takes them)",
+        missing, blind);
+  return missing +
+         ": a law with a memory goes along a straight line there, errs for as long as it remembers, and is "
+         "not chosen for it; fit what lies before or after alone";
 }
 
 /// A force that was sampled more slowly than it was written.
@@ -265,9 +310,10 @@ std::size_t leave_out_rows(const schema::Recording& recording, const std::vector
 
 CountedRows mark_rows(const FitSource& source, const RowChoice& choice, double felt, AxisSeries& series) {
   CountedRows counted = mark_counted(series, *source.recording, source.axis, choice, felt);
-  if (source.not_the_tissue.empty()) return counted;
-  counted.rows = leave_out_rows(*source.recording, source.not_the_tissue, series);
-  if (counted.rows < fewest_counted)
+  if (!source.not_the_tissue.empty())
+    counted.rows = leave_out_rows(*source.recording, source.not_the_tissue, series);
+  if (choice.rows == Counted::contact) leave_out_what_remembers_gaps(series, felt, counted);
+  if (!source.not_the_tissue.empty() && counted.rows < fewest_counted)
     throw std::invalid_argument(
         fmt::format("in {} rows it is in contact where its blank has been, and {} are needed", counted.rows,
                     fewest_counted));
@@ -299,9 +345,9 @@ std::vector<std::string> doubts_of(const AxisSeries& series, const fitting::FitO
   if (of_the_force.empty()) of_the_force = nothing_changes(series, settings);
   if (of_the_force.empty()) of_the_force = helps_going_in(series, settings);
   if (of_the_force.empty()) of_the_force = begins_elsewhere(series, settings);
-  for (std::string& doubt :
-       std::array{std::move(of_the_force), positions_that_jump(series), gaps_in_time(series),
-                  held_force(series), single_rows(series, settings)}) {
+  for (std::string& doubt : std::array{std::move(of_the_force), positions_that_jump(series),
+                                       gaps_in_time(series, settings.jnd.threshold), held_force(series),
+                                       single_rows(series, settings)}) {
     if (!doubt.empty()) doubts.push_back(std::move(doubt));
   }
   if (settings.folds >= 2 && !series.cycle.empty() && *std::ranges::max_element(series.cycle) == 1) {
@@ -312,11 +358,19 @@ std::vector<std::string> doubts_of(const AxisSeries& series, const fitting::FitO
   return doubts;
 }
 
-std::string contact_by_the_force(const FitSource& source) {
-  const double found = source.recording->axes.at(source.axis).contact_position;
-  if (!std::isfinite(found) || source.contact.position != found) return "";
-  return "penetration is counted from where the force was found to begin: intervals take that as exact, and "
-         "are too narrow by what it may be off";
+std::optional<double> contact_error_of(const FitSource& source) {
+  const schema::Axis& axis = source.recording->axes.at(source.axis);
+  if (source.contact.position != axis.contact_position || !std::isfinite(axis.contact_error))
+    return std::nullopt;
+  return axis.contact_error;
+}
+
+std::string contact_without_error(const FitSource& source) {
+  if (source.contact.position != source.recording->axes.at(source.axis).contact_position ||
+      contact_error_of(source))
+    return "";
+  return "penetration is counted from where the force was found to begin, by how much that may be off is not "
+         "known: intervals take it as exact, and are too narrow; 'kerf prepare --onset' anew says how much";
 }
 
 std::string rows_left_out(const AxisSeries& series) {

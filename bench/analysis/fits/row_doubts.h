@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,9 @@ struct CountedSeries {
   CountedRows counted;
 };
 
-/// Marks the rows that count: mark_counted(), less those that are not the tissue's.
+/// Marks the rows that count: mark_counted(), less those that are not the tissue's, and where rows in contact
+/// are asked for, less those after a gap in time (of 50 ms and 20 periods at least) until the tool is free of
+/// the tissue, if half of the rows are left: what tissue remembers of a gap no law is told.
 /// @throws std::invalid_argument as mark_counted() does, and where of these fewer than 20 are left.
 CountedRows mark_rows(const FitSource& source, const RowChoice& choice, double felt, AxisSeries& series);
 
@@ -35,8 +38,13 @@ CountedRows mark_rows(const FitSource& source, const RowChoice& choice, double f
 [[nodiscard]] std::vector<std::string> doubts_of(const AxisSeries& series,
                                                  const fitting::FitOptions& settings);
 
-/// Where penetration is 0 because the force was seen to begin there: what intervals do not know. Else empty.
-[[nodiscard]] std::string contact_by_the_force(const FitSource& source);
+/// The standard error of the contact, where `kerf prepare --onset` found it and its error; none where nobody
+/// says.
+[[nodiscard]] std::optional<double> contact_error_of(const FitSource& source);
+
+/// Where penetration is 0 because the force was seen to begin there, and nobody noted by how much that may be
+/// off: what intervals do not know. Else empty.
+[[nodiscard]] std::string contact_without_error(const FitSource& source);
 
 /// How many rows of a recording are not finite and are left out, in words; empty where none is.
 [[nodiscard]] std::string rows_left_out(const AxisSeries& series);

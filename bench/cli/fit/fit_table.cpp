@@ -44,7 +44,13 @@ void say_parameters(const RecordingFit& fit, const FittedLaw& law, Context& cont
     context.say(fmt::format("  {}: {} parameters, in fit.csv", law.result.model, parameters.size()));
     return;
   }
-  context.say(fmt::format("  {}, with {:g} % intervals", law.result.model, 100.0 * fit.settings.confidence));
+  std::string of_places;
+  for (const models::DataOption& option : models::law_facts(law.result.model).from_data) {
+    const auto* const value = std::get_if<double>(&law.result.law_options.at(std::string(option.name)));
+    if (value != nullptr) of_places += fmt::format("; {} = {:.6g}", option.name, *value);
+  }
+  context.say(fmt::format("  {}, with {:g} % intervals{}", law.result.model, 100.0 * fit.settings.confidence,
+                          of_places));
   const auto say_one = [&](const fitting::Estimate& estimate) {
     const bool shared = estimate.recording == fitting::Estimate::shared;
     const std::string unit =

@@ -87,6 +87,42 @@ TEST(RowDoubts, SayWhereTheForceBeginsIfNotAtContact) {
       << "friction turns with the motion";
 }
 
+/// Without the rows of some seconds, from the first in which the tool goes in past a place after a time.
+schema::Recording with_a_gap(schema::Recording recording, double after_s, double past, double gap_s) {
+  std::size_t begin = 1;
+  while (recording.time[begin] < after_s || recording.position[begin - 1] > past ||
+         recording.position[begin] <= past)
+    ++begin;
+  std::size_t end = begin;
+  while (recording.time[end] < recording.time[begin] + gap_s) ++end;
+  const auto cut = [&](auto& values) {
+    values.erase(values.begin() + static_cast<std::ptrdiff_t>(begin),
+                 values.begin() + static_cast<std::ptrdiff_t>(end));
+  };
+  cut(recording.time);
+  cut(recording.tick);
+  cut(recording.position);
+  cut(recording.velocity);
+  cut(recording.force_measured);
+  return recording;
+}
+
+// What happened in a gap is known to nobody, and a law with a memory errs after it: judged by those rows too,
+// the law that the tissue has is worse by half than its noise, and another one is taken.
+TEST(RowDoubts, LeaveOutWhatTissueRemembersOfAGap) {
+  const schema::Recording cut =
+      with_a_gap(test::cut_of(test::known_kelvin(), {.with_cycles = false}), 3.0, 0.2, 0.5);
+  FitRecordingOptions options{.models = {"kelvin", "friction", "exponential"}};
+  const RecordingFit fit = fit_recording(cut, options);
+  EXPECT_EQ(fit.choice.model, "kelvin");
+  EXPECT_NEAR(fit.laws[0].result.rmse, 0.02, 1e-3);
+  EXPECT_THAT(fit.warnings, Contains(HasSubstr("rows until the tool is free again count neither in fits")));
+  options.rows.rows = Counted::all;
+  const RecordingFit all = fit_recording(cut, options);
+  EXPECT_GT(all.laws[0].result.rmse, 0.03);
+  EXPECT_THAT(all.warnings, Contains(HasSubstr("errs for as long as it remembers")));
+}
+
 TEST(RenderedSeries, IsAPeriodLate) {
   AxisSeries series = series_of(2000, 1e-3);
   for (std::size_t i = 0; i < 2000; ++i)
