@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include "files/json_number.h"
 #include "html/html.h"
@@ -63,6 +64,19 @@ std::string of_the_least_damping(const WallMap& map) {
       undamped ? fmt::format(", Abbott and Okamura {:.4g}", map.abbott_okamura) : "");
 }
 
+/// What a wall that was tried has and the eigenvalues do not know; empty of nothing.
+std::string beside_the_eigenvalues(const WallMap& map) {
+  std::vector<std::string> takers;
+  if (map.device.encoder_step_m > 0.0) takers.emplace_back("encoder steps");
+  if (map.trial.push_n > 0.0) takers.emplace_back("lifting off");
+  std::vector<std::string> parts;
+  if (map.device.coulomb_n > 0.0) parts.emplace_back("Coulomb friction adds");
+  if (!takers.empty())
+    parts.push_back(
+        fmt::format("{} {} away", fmt::join(takers, " and "), takers.size() > 1 ? "take" : "takes"));
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
 /// In words what the lines say of each other.
 std::vector<std::string> comparison(const WallMap& map) {
   std::vector<std::string> lines;
@@ -81,12 +95,11 @@ std::vector<std::string> comparison(const WallMap& map) {
     least = std::min(least, at.simulated / at.eigenvalues);
     most = std::max(most, at.simulated / at.eigenvalues);
   }
-  const bool differs = !map.device.is_linear() || map.trial.push_n > 0.0;
-  if (differs && most > 0.0) {
+  if (const std::string why = beside_the_eigenvalues(map); !why.empty() && most > 0.0) {
     lines.push_back(
         fmt::format("as it was tried it comes to rest up to {:.2f} to {:.2f} times the stiffness of the "
-                    "eigenvalues: Coulomb friction adds, encoder steps and lifting off take away",
-                    least, most));
+                    "eigenvalues: {}",
+                    least, most, why));
   }
   lines.push_back(of_the_least_damping(map));
   for (std::string& line : in_words(wall_conditions)) lines.push_back(std::move(line));

@@ -46,31 +46,41 @@ class Trial {
   Trial(const SampledDevice& device, const std::shared_ptr<const DeviceMotion>& moves, const Wall& wall,
         const WallTrial& trial)
       : trial_(trial),
+        mass_(device.moving_mass_kg()),
+        stiffness_(wall.stiffness_n_per_m + device.hand.stiffness_n_per_m),
         start_m_(trial.start_m + (trial.push_n > 0.0 ? trial.push_n / wall.stiffness_n_per_m : 0.0)),
         loop_(device, moves, WallForce{wall, trial.push_n > 0.0}, {.position_m = start_m_}) {}
 
-  /// A tick of a quarter of the time; of no effect once the device is lost.
-  void step(int quarter) noexcept {
+  /// A tick; of no effect once the device is lost.
+  void step() noexcept {
     if (lost_) return;
     loop_.step(trial_.push_n);
-    if (quarter == 1) second_.add(loop_.motion(), loop_.held_n());
-    if (quarter == 3) last_.add(loop_.motion(), loop_.held_n());
+    quarter_.add(loop_.motion(), loop_.held_n());
     lost_ = !(std::abs(loop_.motion().position_m) < lost_m + start_m_);
   }
-  [[nodiscard]] bool came_to_rest(const SampledDevice& device) noexcept {
-    if (lost_) return false;
-    if (last_.ripple_n() <= trial_.felt_n) return true;
-    const double mass = device.moving_mass_kg();
-    const double stiffness = loop_.force().wall.stiffness_n_per_m + device.hand.stiffness_n_per_m;
-    return last_.energy(mass, stiffness) < limit_cycle_decay * second_.energy(mass, stiffness);
+  void end_quarter() {
+    energy_.push_back(quarter_.energy(mass_, stiffness_));
+    is_felt_ = quarter_.ripple_n() > trial_.felt_n;
+    quarter_ = {};
+  }
+  [[nodiscard]] bool is_quiet() const noexcept { return !lost_ && !is_felt_; }
+  /// The energy has fallen from quarter to quarter, but for the first, which has what the start left of all
+  /// modes, and to a half from the second to the fourth.
+  [[nodiscard]] bool decays() const noexcept {
+    bool falls = !lost_;
+    for (std::size_t i = 2; i < energy_.size(); ++i) falls = falls && energy_[i] < energy_[i - 1];
+    return falls && energy_[3] < limit_cycle_decay * energy_[1];
   }
 
  private:
   WallTrial trial_;
+  double mass_;
+  double stiffness_;
   double start_m_;
   SampledLoop<WallForce> loop_;
-  Stretch second_;
-  Stretch last_;
+  Stretch quarter_;
+  std::vector<double> energy_;  ///< of each quarter
+  bool is_felt_ = true;
   bool lost_ = false;
 };
 
@@ -94,12 +104,18 @@ std::vector<bool> WallSimulation::come_to_rest(std::span<const Wall> walls, cons
     for (const Wall& wall : walls.subspan(begin, std::min(together, walls.size() - begin))) {
       trials.emplace_back(device_, moves_, wall, trial);
     }
-    for (int part = 0; part < 4; ++part) {
+    const auto run_a_quarter = [&](std::span<Trial> some) {
       for (std::size_t tick = 0; tick < quarter; ++tick) {
-        for (Trial& one : trials) one.step(part);
+        for (Trial& one : some) one.step();
       }
+      for (Trial& one : some) one.end_quarter();
+    };
+    for (int part = 0; part < 4; ++part) run_a_quarter(trials);
+    for (Trial& one : trials) {
+      for (int part = 0; part < 4 && !one.is_quiet() && one.decays(); ++part)
+        run_a_quarter(std::span(&one, 1));
+      rest.push_back(one.is_quiet() || one.decays());
     }
-    for (Trial& one : trials) rest.push_back(one.came_to_rest(device_));
   }
   return rest;
 }

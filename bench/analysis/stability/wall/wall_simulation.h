@@ -24,8 +24,10 @@ struct WallTrial {
 ///
 /// The energy of the motion about its mean, M v^2 + K (x - mean)^2, is averaged over the second and the last
 /// quarter of the time. A linear wall comes to rest if it falls from the one to the other. With an encoder,
-/// Coulomb friction or one side there are limit cycles, which neither grow nor fall: such a wall comes to
-/// rest if the force in the last quarter varies by less than a hand feels, or the energy fell to a half.
+/// Coulomb friction or one side there are limit cycles, which neither grow nor fall, and bounces, whose
+/// energy rises and falls by chance: such a wall comes to rest if the force in the last quarter varies by
+/// less than a hand feels; or if the energy falls from quarter to quarter, from the second to the last to a
+/// half, and goes on to fall through four quarters more, or until no hand feels it.
 class WallSimulation {
  public:
   explicit WallSimulation(const SampledDevice& device);

@@ -119,6 +119,20 @@ TEST(Wall, ComesToRestByCoulombFrictionWhereViscousFrictionAloneWouldNotDo) {
   EXPECT_TRUE(WallSimulation(device).comes_to_rest(stiff, {.start_m = 1e-4}));
 }
 
+// Nothing takes energy out of a bounce on a one-sided wall but what the eigenvalues know: it goes on for ever
+// beyond their boundary, and whatever its energy does from one quarter of a trial to another is chance.
+TEST(Wall, ThatBouncesForEverDoesNotComeToRestByChance) {
+  const SampledDevice device{.mass_kg = 0.1, .viscous_n_s_per_m = 0.5};
+  const WallSimulation walls(device);
+  for (const double damping : {0.0, 5.0, 20.0, 69.26}) {
+    const double theory = eigenvalue_boundary(device, damping, 1.0, 1e6);
+    for (const double seconds : {2.0, 5.0}) {
+      const double found = walls.boundary(damping, 1.0, 1e6, {.seconds = seconds, .push_n = 2.0});
+      EXPECT_LE(found, 1.02 * theory) << damping << " N·s/m, " << seconds << " s";
+    }
+  }
+}
+
 TEST(Wall, KeepsALimitCycleThatAnEncoderFeeds) {
   // One step of the encoder is read as 36 mm/s, against which the wall pushes with 1.1 N.
   SampledDevice device{.mass_kg = 0.05, .viscous_n_s_per_m = 0.2, .encoder_step_m = 3.6e-5};
