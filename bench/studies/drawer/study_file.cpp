@@ -15,6 +15,7 @@
 #include "files/file_names.h"
 #include "files/named_file.h"
 #include "fits/fit_recording.h"
+#include "fits/law_options.h"
 #include "laws/law_toml.h"
 
 namespace kerf::bench {
@@ -161,6 +162,12 @@ void read_laws(const Place& place, const toml::table& root, StudyPlan& study) {
       place.refuse(*root.get("laws"), "{}", error.what());
     }
   }
+  study.law_options = texts_of(place, root, "law_options");
+  try {
+    check_law_options(study.laws, study.law_options);
+  } catch (const std::invalid_argument& error) {
+    place.refuse(*root.get("law_options"), "{}", error.what());
+  }
 }
 
 void read_compare(const Place& place, const toml::table& root, StudyPlan& study) {
@@ -203,8 +210,8 @@ StudyPlan read_study(const fs::path& file) {
   if (version == nullptr || version->value<int>() != StudyPlan::version)
     place.refuse(root, "expected version = {}: a study.toml of 'kerf study new'", StudyPlan::version);
   place.allow_only(root,
-                   {"version", "folder", "map", "laws", "cycles", "closing", "compare", "licence", "people",
-                    "blade", "file", "layout", "prepare"},
+                   {"version", "folder", "map", "laws", "law_options", "cycles", "closing", "compare",
+                    "licence", "people", "blade", "file", "layout", "prepare"},
                    "a study");
   StudyPlan study;
   const std::string folder = place.text(root, "folder", "");

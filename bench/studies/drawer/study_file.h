@@ -53,9 +53,10 @@ struct StudyPlan {
   std::string map;               ///< of text files, or an import file from the study's folder; empty: unknown
   std::vector<StudyLayout> layouts{};
   std::vector<std::string> laws;
-  bool all_cycles = false;  ///< flagged cycles count too
-  std::string blade{};      ///< law file with the shape of a blade, from the study's folder; empty: none
-  std::string closing;      ///< "increasing" or "decreasing"; empty: the direction that costs more work
+  std::vector<std::string> law_options{};  ///< NAME=VALUE, each for the laws that have it
+  bool all_cycles = false;                 ///< flagged cycles count too
+  std::string blade{};  ///< law file with the shape of a blade, from the study's folder; empty: none
+  std::string closing;  ///< "increasing" or "decreasing"; empty: the direction that costs more work
   std::vector<std::string> compare;  ///< what tissues and speeds are compared by: peak, work, LAW.PARAMETER
   std::string licence;               ///< of the data, a URL or a name; empty: none was given
   std::vector<std::string> people;

@@ -83,6 +83,9 @@ std::string study_text(const StudyPlan& study) {
       StudyPlan::version, toml_quoted(study.folder.generic_string()), toml_quoted(study.map),
       toml_list(study.laws), study.all_cycles ? "all" : "good", toml_quoted(study.closing),
       toml_list(study.compare), toml_quoted(study.licence), toml_list(study.people));
+  if (!study.law_options.empty())
+    text += fmt::format("\n# Options of the laws that have them.\nlaw_options = {}\n",
+                        toml_list(study.law_options));
   if (!study.blade.empty())
     text += fmt::format("\n# The shape of the blade that is fitted to recordings of six axes.\nblade = {}\n",
                         toml_quoted(study.blade));

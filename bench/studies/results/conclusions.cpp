@@ -7,6 +7,8 @@
 
 #include <fmt/ranges.h>
 
+#include <kerf/models/law.h>
+
 namespace kerf::bench {
 namespace {
 
@@ -256,10 +258,13 @@ std::string difference_in_words(const StudiedComparison& comparison) {
   const auto value = [&](double of) { return comparison.is_logarithm ? std::exp(of) : of; };
   const std::string what = comparison.is_logarithm ? "ratio" : "difference";
   const std::string unit = comparison.is_logarithm ? "" : " " + comparison.unit;
-  std::string text = fmt::format("{} {:.3g}{}", what, value(*found.difference), unit);
+  int digits = 3;  // more where an interval would have no width
+  const auto shown = [&](double of) { return fmt::format("{:.{}g}", value(of), digits); };
+  while (found.interval && digits < 9 && shown(found.interval->lower) == shown(found.interval->upper))
+    ++digits;
+  std::string text = fmt::format("{} {}{}", what, shown(*found.difference), unit);
   if (found.interval)
-    text +=
-        fmt::format(", 95 % {:.3g} to {:.3g}", value(found.interval->lower), value(found.interval->upper));
+    text += fmt::format(", 95 % {} to {}", shown(found.interval->lower), shown(found.interval->upper));
   return text;
 }
 
@@ -316,6 +321,15 @@ std::vector<Conclusion> conclusions_of(const StudyResults& results) {
   add_blades(results, all);
   for (const StudiedGroup& group : results.groups) all.push_back(law_in_words(results, group));
   for (Conclusion& one : on_others_in_words(results)) all.push_back(std::move(one));
+  for (const std::string& model : results.plan.laws) {
+    // Points of tables lie where each recording has been; nobody expects them to be those of another.
+    const bool is_table = models::law_facts(model).search == models::Search::tables;
+    const bool is_asked = std::ranges::any_of(
+        results.plan.compare, [&](const std::string& what) { return what.starts_with(model + "."); });
+    if (is_table && !is_asked) continue;
+    if (std::string why = why_not_of_one_quantity(results, model); !why.empty())
+      all.push_back({.says = Says::unknown, .sentence = std::move(why) + "."});
+  }
   add_comparisons(results, all);
   return all;
 }

@@ -117,6 +117,7 @@ StudiedQuantity cycle_quantity(const StudyResults& results, const StudiedGroup& 
 /// Every parameter of a law, in the order of the first recording that has it.
 std::vector<StudiedQuantity> parameters_in_group(const StudyResults& results, const StudiedGroup& group,
                                                  const std::string& model) {
+  if (!why_not_of_one_quantity(results, model).empty()) return {};
   std::vector<StudiedQuantity> found;
   std::vector<bool> positive;
   for (const std::size_t at : group.counted) {
@@ -286,6 +287,29 @@ void form_groups(StudyResults& results) {
     }
   }
   for (auto& [factors, group] : groups) results.groups.push_back(std::move(group));
+}
+
+std::string why_not_of_one_quantity(const StudyResults& results, const std::string& model) {
+  constexpr double same = 1e-9;
+  std::map<std::string, std::pair<double, double>> ranges;  // of each option
+  for (const DrawerRecording& recording : results.recordings) {
+    const StudiedLaw* const law = law_of(recording, model);
+    if (!recording.counts() || law == nullptr || !law->can_be_chosen) continue;
+    for (const auto& [name, value] : law->taken_from_it) {
+      auto& range = ranges.try_emplace(name, value, value).first->second;
+      range = {std::min(range.first, value), std::max(range.second, value)};
+    }
+  }
+  for (const auto& [name, range] : ranges) {
+    const auto& [least, most] = range;
+    if (most - least <= same * std::abs(most)) continue;
+    return fmt::format(
+        "parameters of {} are neither pooled nor compared: its {} was taken from each recording, {:.4g} to "
+        "{:.4g}, so that they are not of one quantity; law_options = [\"{}={:.2g}\"] in study.toml makes "
+        "them so",
+        model, name, least, most, name, least);
+  }
+  return "";
 }
 
 void conclude(StudyResults& results) {

@@ -86,6 +86,10 @@ struct StudyResults {
   std::vector<Conclusion> conclusions{};
 };
 
+/// Why the parameters of a law are not of one quantity in all recordings, and how they become so; empty where
+/// they are. Such parameters are neither pooled nor compared.
+[[nodiscard]] std::string why_not_of_one_quantity(const StudyResults& results, const std::string& model);
+
 /// Sorts the recordings into groups.
 void form_groups(StudyResults& results);
 /// Fills in all that follows from the recordings and the errors on others of each group.

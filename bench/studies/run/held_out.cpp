@@ -69,6 +69,7 @@ GroupSources sources_of_group(const StudyPlan& plan, const std::vector<DrawerRec
                            .not_the_tissue = recordings[at].result.not_the_tissue()});
   }
   all.options.models = plan.laws;
+  all.options.law_options = plan.law_options;
   all.options.rows.cycles.by = plan.all_cycles ? CycleChoice::By::all : CycleChoice::By::good;
   all.options.floor = false;
   all.options.fit.folds = 0;

@@ -17,6 +17,7 @@
 #include "fits/fit_files.h"
 #include "fits/fit_recording.h"
 #include "fits/fit_series.h"
+#include "fits/law_options.h"
 #include "fits/row_doubts.h"
 #include "import/import.h"
 #include "inputs/study_imports.h"
@@ -172,7 +173,7 @@ void look_at_rows(const schema::Recording& recording, std::size_t axis, StudiedR
   take_sensor(inspection, result);
 }
 
-StudiedLaw studied(const RecordingFit& fit, const FittedLaw& law) {
+StudiedLaw studied(const RecordingFit& fit, const FittedLaw& law, const models::Options& asked) {
   const fitting::FitResult& found = law.result;
   StudiedLaw one{.model = found.model,
                  .free_parameters = found.free_parameters,
@@ -190,6 +191,13 @@ StudiedLaw studied(const RecordingFit& fit, const FittedLaw& law) {
          .std_error = estimate.std_error,
          .is_positive = estimate.info.lower >= 0.0});
   }
+  for (const models::DataOption& option : models::law_facts(found.model).from_data) {
+    const bool is_place = option.from == models::From::first || option.from == models::From::last ||
+                          option.from == models::From::depth || option.from == models::From::speed;
+    const std::string name(option.name);
+    if (is_place && !asked.contains(name))
+      one.taken_from_it[name] = std::get<double>(found.law_options.at(name));
+  }
   return one;
 }
 
@@ -197,6 +205,7 @@ FitRecordingOptions fit_options(const RecordingStep& step, const schema::Recordi
                                 std::size_t axis, const std::atomic<bool>& stop) {
   FitRecordingOptions options;
   options.models = step.plan->laws;
+  options.law_options = step.plan->law_options;
   options.axis = axis;
   options.rows.cycles.by = step.plan->all_cycles ? CycleChoice::By::all : CycleChoice::By::good;
   options.stop = &stop;
@@ -247,7 +256,8 @@ void fit_laws(const RecordingStep& step, const schema::Recording& recording, con
   }
   fs::create_directory(folder / "fits");
   write_fits(fit, folder / "recording.h5", folder / "fits");
-  for (const FittedLaw& law : fit.laws) result.laws.push_back(studied(fit, law));
+  for (const FittedLaw& law : fit.laws)
+    result.laws.push_back(studied(fit, law, options_of_law(law.result.model, options.law_options)));
   result.floor = fit.floor ? fit.floor->velocity_n : std::numeric_limits<double>::quiet_NaN();
   result.chosen = fit.choice.model;
   result.why_chosen = fit.choice.why;
@@ -327,6 +337,7 @@ std::string key_of(const RecordingStep& step) {
            {"import", as_json(step.import)}, {"laws", plan.laws},         {"all_cycles", plan.all_cycles},
            {"closing", plan.closing},        {"blank", step.file->blank}, {"join", as_json(step.join)},
            {"blanks", as_json(step.blanks)}};
+  if (!plan.law_options.empty()) all["law_options"] = plan.law_options;
   if (!step.file->axis.empty()) all["axis"] = step.file->axis;
   if (!step.shape.empty()) all["shape"] = sha256_of(step.shape);
   return sha256_of(std::string_view(all.dump()));

@@ -37,7 +37,8 @@ json law_as_json(const StudiedLaw& law) {
           {"can_be_chosen", law.can_be_chosen},
           {"within_jnd", law.within_jnd},
           {"blame", law.blame},
-          {"parameters", parameters_as_json(law.parameters)}};
+          {"parameters", parameters_as_json(law.parameters)},
+          {"taken_from_it", law.taken_from_it}};
 }
 
 json cycle_as_json(const StudiedCycle& cycle) {
@@ -67,6 +68,7 @@ StudiedLaw studied_law(const json& from) {
                  .blame = from.at("blame"),
                  .parameters = {}};
   law.parameters = studied_parameters(from.at("parameters"));
+  if (from.contains("taken_from_it")) law.taken_from_it = from.at("taken_from_it");
   return law;
 }
 

@@ -32,6 +32,9 @@ struct StudiedLaw {
   bool within_jnd = false;  ///< held out
   std::string blame;        ///< what is to blame where it is not
   std::vector<StudiedParameter> parameters;
+  /// Options that a fit took from this recording, such as a depth at which a force is given: parameters are
+  /// of one quantity only where these are the same.
+  std::map<std::string, double> taken_from_it{};
 };
 
 struct StudiedCycle {

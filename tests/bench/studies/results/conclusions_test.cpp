@@ -72,6 +72,27 @@ TEST(Conclusions, SayThatTissuesDifferWithTheirRatio) {
 }
 
 // Geometric mean and Student's interval of five equal errors: that of a t test of logarithms.
+// A force at a depth that each recording has of its own is another force in each.
+TEST(Conclusions, CompareNoParametersThatAreOfAnotherQuantityInEachRecording) {
+  const auto with_depths = [](double of_liver, double of_skin) {
+    auto recordings = five_specimens("liver", 1.0);
+    for (DrawerRecording& one : five_specimens("skin", 2.0)) recordings.push_back(std::move(one));
+    for (DrawerRecording& one : recordings) {
+      one.result.laws[0].taken_from_it["reference_depth"] = one.file.tissue == "liver" ? of_liver : of_skin;
+    }
+    return study_of(std::move(recordings));
+  };
+  const auto stiffness = [](const StudyResults& results) {
+    return std::ranges::count(results.groups.at(0).quantities, "kelvin.parallel_stiffness",
+                              &StudiedQuantity::name);
+  };
+  EXPECT_EQ(stiffness(with_depths(0.01, 0.01)), 1);
+  EXPECT_THAT(sentences_of(with_depths(0.01, 0.01)), testing::Not(Contains(HasSubstr("reference_depth"))));
+  EXPECT_EQ(stiffness(with_depths(0.01, 0.006)), 0);
+  EXPECT_THAT(sentences_of(with_depths(0.01, 0.006)),
+              Contains(HasSubstr("law_options = [\"reference_depth=0.006\"] in study.toml makes them so")));
+}
+
 TEST(Conclusions, TakeMeansOverSpecimens) {
   const StudyResults results = two_tissues();
   const auto& quantities = results.groups[0].quantities;
