@@ -245,6 +245,16 @@ double until_of(const AnswerText& text) {
   return ratio;
 }
 
+/// Levels in a table whose design knows none.
+void remark_idle_levels(Study& study) {
+  const auto has_level = [](const Judgement& one) { return !one.is_catch && !std::isnan(one.level); };
+  if (has_levels(study.design) || std::ranges::none_of(study.judgements, has_level)) return;
+  study.remarks.push_back(fmt::format(
+      "the column 'level' is not looked at, since the design '{}' has none: with # design = \"constant\" a "
+      "psychometric function of two intervals is fitted to it, and a JND is told",
+      name_of(study.design)));
+}
+
 /// The levels that were shown, which also say whether they lie on both sides of the standard.
 void take_levels(const AnswerText& text, Study& study) {
   if (!has_levels(study.design)) return;
@@ -287,6 +297,7 @@ Study parse_answers(std::string_view content, const std::string& name, std::opti
   for (const AnswerRow& row : text.rows) study.judgements.push_back(read_row(text, row, form, study));
   for (const Judgement& each : study.judgements)
     study.confidence_levels = std::max(study.confidence_levels, each.confidence);
+  remark_idle_levels(study);
   return study;
 }
 

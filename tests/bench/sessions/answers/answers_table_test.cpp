@@ -63,6 +63,13 @@ TEST(ATableOfLevels, KnowsTheLevelsThatWereShown) {
 }
 
 // Right below the standard is to name the standard, not the comparison.
+TEST(ATableOfLevels, UnderADesignWithoutThemIsToldSo) {
+  const char* const rows = "subject,level,correct\n1,0.2,1\n1,0.1,0\n";
+  EXPECT_THAT(parse_answers(std::string("# design = \"2ifc\"\n") + rows, "a.csv").remarks,
+              testing::ElementsAre(HasSubstr("the column 'level' is not looked at")));
+  EXPECT_THAT(parse_answers(rows, "a.csv").remarks, testing::IsEmpty());
+}
+
 TEST(ATableOfLevelsOnBothSides, TakesRightnessAsWellAsWhatWasNamed) {
   const Study named = parse_answers("subject,level,comparison\n1,-0.1,0\n1,0.1,1\n1,0,1\n", "a.csv");
   EXPECT_FALSE(named.task);
