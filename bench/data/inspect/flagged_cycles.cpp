@@ -130,4 +130,19 @@ CycleMeans means_of_good_cycles(const schema::Recording& about, const schema::Cy
   return means_of_good_cycles(cycles, is_good);
 }
 
+CycleMeans means_of_good_cycles(const schema::RecordedRows& rows, const schema::Cycles& cycles, double felt) {
+  const schema::Recording& about = rows.about();
+  if (about.cycles && about.cycle_flags && about.cycles->axis == cycles.axis)
+    return means_of_good_cycles(about, cycles);
+  std::vector<bool> is_good;
+  try {
+    for (const FlaggedCycle& cycle : flagged_cycles(rows, cycles, felt)) is_good.push_back(cycle.is_good());
+  } catch (const schema::FormatError&) {
+    is_good.clear();  // phases whose rows are not there: of what is there all count, as it is stored
+  } catch (const std::invalid_argument&) {
+    is_good.clear();
+  }
+  return means_of_good_cycles(cycles, is_good);
+}
+
 }  // namespace kerf::bench

@@ -40,5 +40,9 @@ struct CycleMeans {
 [[nodiscard]] CycleMeans means_of_good_cycles(const schema::Cycles& cycles, const std::vector<bool>& is_good);
 /// As a recording says which are good; all where it does not, or of cycles along another axis.
 [[nodiscard]] CycleMeans means_of_good_cycles(const schema::Recording& about, const schema::Cycles& cycles);
+/// As a recording says it, else as it is found now; `felt` as in flagged_cycles(). All where nothing can be
+/// found, without a force or with phases whose rows are not there.
+[[nodiscard]] CycleMeans means_of_good_cycles(const schema::RecordedRows& rows, const schema::Cycles& cycles,
+                                              double felt);
 
 }  // namespace kerf::bench

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include <kerf/fitting/jnd.h>
+#include <kerf/schema/recorded_rows.h>
 
 #include "editor/segment_editor.h"
 #include "fits/fit_recording.h"
@@ -31,7 +32,8 @@ EditorCurve editor_curve(const schema::Recording& recording, std::size_t axis) {
   const bool has_cycles = recording.cycles && recording.cycles->axis == axis;
   const schema::Cycles cycles = has_cycles ? *recording.cycles : find_cycles(recording, {.axis = axis});
   const schema::Axis& about = recording.axes[axis];
-  CycleMeans means = means_of_good_cycles(recording, cycles);
+  const fitting::Jnd jnd = fitting::jnd_of(about.force_unit, about.lever);
+  CycleMeans means = means_of_good_cycles(schema::RowsInMemory(recording), cycles, jnd.threshold);
   EditorCurve curve{.axis = about.name,
                     .position_unit = about.position_unit,
                     .force_unit = about.force_unit,
@@ -41,7 +43,7 @@ EditorCurve editor_curve(const schema::Recording& recording, std::size_t axis) {
                     .penetration = {},
                     .closing = std::move(means.closing),
                     .opening = std::move(means.opening),
-                    .jnd = fitting::jnd_of(about.force_unit, about.lever)};
+                    .jnd = jnd};
   const double direction = curve.contact.direction;
   for (const double position : cycles.grid) {
     curve.penetration.push_back(direction * (position - curve.contact.position));

@@ -10,6 +10,8 @@
 
 #include <fmt/core.h>
 
+#include <kerf/fitting/jnd.h>
+
 #include "inspect/flagged_cycles.h"
 #include "laws/render.h"
 #include "plot/plot.h"
@@ -56,9 +58,11 @@ void add_phases(const schema::Cycles& found, std::uint64_t rows, AxisCycles& cyc
   for (const auto& [number, span] : by_number) cycles.cycles.push_back(span);
 }
 
-void add_averages(const schema::Recording& about, const schema::Cycles& found, bool is_measured,
+void add_averages(const schema::RecordedRows& rows, const schema::Cycles& found, bool is_measured,
                   AxisCycles& cycles) {
-  CycleMeans means = means_of_good_cycles(about, found);
+  const schema::Axis& axis = rows.about().axes.at(found.axis);
+  CycleMeans means =
+      means_of_good_cycles(rows, found, fitting::jnd_of(axis.force_unit, axis.lever).threshold);
   cycles.grid = found.grid;
   cycles.closing = std::move(means.closing);
   cycles.opening = std::move(means.opening);
@@ -114,7 +118,7 @@ AxisCycles axis_cycles(const schema::RecordingFile& file, std::size_t axis) {
   cycles.contact = contact_along(file, axis, found);
   add_phases(*found, file.rows(), cycles);
   if (cycles.cycles.empty()) cycles.why_none = "its cycles hold no rows";
-  if (found->axis == axis) add_averages(about, *found, is_measured(file), cycles);
+  if (found->axis == axis) add_averages(file, *found, is_measured(file), cycles);
   return cycles;
 }
 

@@ -79,6 +79,18 @@ TEST(ForceLoops, AreFoundWhereNobodySegmented) {
   EXPECT_NEAR(cycles.closing[50], 2.0, 1e-3);
 }
 
+TEST(ForceLoops, AreAveragedOverGoodCyclesBeforeAnybodySavedThem) {
+  schema::Recording recording = cutting(6.0, true);
+  for (std::size_t row = 2000; row < 3000; ++row) {  // one stroke in nothing
+    recording.force_measured[2 * row + 1] = 1e-3;
+  }
+  const SavedRecording saved(recording);
+  const AxisCycles cycles = axis_cycles(schema::RecordingFile(saved.path()), 1);
+  EXPECT_TRUE(cycles.segmented_here);
+  EXPECT_LT(cycles.averaged, cycles.cycles.size());
+  EXPECT_NEAR(cycles.closing[50], 2.0, 1e-3);
+}
+
 TEST(ForceLoops, OfACommandResist) {
   // Closing shrinks the angle, so that a command that opens resists.
   const SavedRecording saved(cutting(5.0, false));
