@@ -205,7 +205,7 @@ Chart chart_picture(const json& chart) {
   Chart picture{.title = fmt::format("Cost of a tick over error: {}", chart.at("source").get<std::string>()),
                 .x_label = fmt::format("error, root mean square [{}]{}{}", spots.unit, edges_in_words(spots),
                                        hollow_in_words(spots)),
-                .y_label = "cost of a tick [us]",
+                .y_label = "cost of a tick [µs]",
                 .log_x = true,
                 .log_y = true,
                 .width_px = 1000,

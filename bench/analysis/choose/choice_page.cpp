@@ -33,7 +33,7 @@ std::string deadline_in_words(const json& deadline) {
 std::string candidate_table(const json& all, const LawChoice& choice) {
   std::vector<std::vector<std::string>> rows{{"law", "parameters",
                                               fmt::format("error [{}]", choice.force_unit), "JND",
-                                              "tick [us]", "deadlines", "stable", "why passed over"}};
+                                              "tick [µs]", "deadlines", "stable", "why passed over"}};
   for (const json& one : all.at("candidates")) {
     const Stable stable = stable_from(one.at("stable"));
     const auto why = one.at("passed_over").get<std::string>();
@@ -111,7 +111,7 @@ Chart choice_chart(const json& all) {
   }
   Chart chart{.title = fidelities ? "Error against the cost of a tick"
                                   : "Error on held-out data against the number of parameters",
-              .x_label = fidelities ? "cost of a tick [us]" : "parameters",
+              .x_label = fidelities ? "cost of a tick [µs]" : "parameters",
               .y_label = "error [JND]",
               .log_x = true,
               .log_y = true};

@@ -42,7 +42,7 @@ Curve outline(const json& histogram, const char* label, Colour colour) {
 std::string histogram_figure(const json& check) {
   const double period_us = 1e6 * check.at("period_s").get<double>();
   Chart chart{.title = "Wake latency and cycle time of every tick",
-              .x_label = "duration [us]",
+              .x_label = "duration [µs]",
               .y_label = "ticks",
               .log_x = true,
               .log_y = true};
@@ -63,7 +63,7 @@ std::string histogram_figure(const json& check) {
 
 std::string stage_table(const json& check) {
   std::vector<std::vector<std::string>> rows{
-      {"stage", "mean [us]", "median", "99 %", "99.9 %", "largest", "missed"}};
+      {"stage", "mean [µs]", "median", "99 %", "99.9 %", "largest", "missed"}};
   for (const auto* stage : {"wake", "read", "compute", "compute_cpu", "write", "record", "cycle"}) {
     const json& row = check.at(std::string(stage) + "_us");
     const auto number = [&](const char* key) { return fmt::format("{:.2f}", row.at(key).get<double>()); };

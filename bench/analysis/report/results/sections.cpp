@@ -44,7 +44,7 @@ std::string sentence(std::string text) {
 }
 
 std::string candidate_details(const json& candidates) {
-  Table rows{{"law", "parameters", "held out [JND]", "within the JND", "tick [us]", "stable", "passed over"}};
+  Table rows{{"law", "parameters", "held out [JND]", "within the JND", "tick [µs]", "stable", "passed over"}};
   for (const json& one : candidates) {
     rows.push_back({one.at("law").get<std::string>(), number_text(one.at("parameters"), "{:.0f}"),
                     number_text(one.at("held_out_jnd"), "{:.3g}"), within_or_not(one),
@@ -56,7 +56,7 @@ std::string candidate_details(const json& candidates) {
 }
 
 std::string front_table(const json& points) {
-  Table rows{{"on the front", "fidelity", "median of a tick [us]", "99.9 %", "error [JND]", "within the JND",
+  Table rows{{"on the front", "fidelity", "median of a tick [µs]", "99.9 %", "error [JND]", "within the JND",
               "stable"}};
   const auto in_us = [](const json& ns) {
     return ns.is_number() ? number_text(1e-3 * ns.get<double>(), "{:.3g}") : std::string("-");

@@ -41,7 +41,7 @@ TEST(ChartPicture, IsMadeOfWhatAnEarlierVersionWrote) {
   EXPECT_NE(curve(picture, "exponential").colour, curve(picture, "kelvin").colour);
   EXPECT_EQ(picture.vertical.at(0).at, chart["jnd_n"]);
   EXPECT_TRUE(picture.horizontal.empty()) << "5 ms a tick would press points of 10 ns into a corner";
-  EXPECT_EQ(picture.y_label, "cost of a tick [us]; a tick at 200 Hz has 5000");
+  EXPECT_EQ(picture.y_label, "cost of a tick [µs]; a tick at 200 Hz has 5000");
 }
 
 TEST(ChartPicture, ShowsTheDeadlineWhereALawComesNearIt) {

@@ -1,6 +1,7 @@
 // The scope as an instrument: trigger, cursors, views, markers, deadlines, and what it shows of a loop that has ended.
 
 import { existsSync } from "node:fs";
+import { readFile } from "node:fs/promises";
 import { join } from "node:path";
 
 import { audit } from "./accessibility.mjs";
@@ -47,6 +48,8 @@ export const tests = {
       const row = values.findIndex((it) => it >= 0.3);
       return row > 0 && Math.abs(time[row] - at) < 6e-4;
     });
+    const level = Number(await page.getByLabel("Level [deg]").inputValue());
+    expect(Math.abs(level - (0.3 * 180) / Math.PI) < 1e-6, `${level} degrees are 0.3 rad`);
     await page.screenshot({ path: join(screenshots, "scope_trigger.png") });
     await page.getByRole("button", { name: "Go on" }).click();
     await page.getByRole("button", { name: "Go on" }).waitFor(); // and has it again
@@ -54,6 +57,10 @@ export const tests = {
     await page.getByRole("button", { name: "Go on" }).click();
     await page.getByRole("button", { name: "Pause" }).waitFor();
     await until("the address has no trigger any more", () => !page.url().includes("trigger="));
+    await page.getByLabel("Trigger").selectOption("normal");
+    await page.getByLabel("Level [deg]").fill("20");
+    await page.getByLabel("Level [deg]").blur();
+    await until("the address has it in rad", () => page.url().includes("level=0.349065850399"));
     expectNoComplaints(page);
   },
 
@@ -118,6 +125,41 @@ export const tests = {
     await page.reload();
     await page.getByText(/Largest: .* Hz/).waitFor();
     expectEqual(await page.getByLabel("Spectrum of").inputValue(), "position theta", "what the link says");
+    expectNoComplaints(page);
+  },
+
+  async "force over position, and the spectrum, are handed out as they are drawn"({ browser, studio }) {
+    await studio.serve();
+    await startLoop(studio);
+    const page = await openScope(browser, studio, "?view=xy");
+    await page.getByRole("button", { name: "Pause" }).click();
+    const given = async (kind) => {
+      const menu = page.locator(".scope_view:not([hidden]) .out");
+      await menu.locator("summary").click();
+      const [file] = await Promise.all([
+        page.waitForEvent("download"),
+        menu.getByRole("button", { name: kind, exact: true }).click(),
+      ]);
+      return readFile(await file.path(), "utf8");
+    };
+    const tableOf = (text) => {
+      const [heads, ...rows] = text.trim().split("\r\n");
+      return { heads: heads.split(","), rows: rows.map((it) => it.split(",").map(Number)) };
+    };
+    const xy = tableOf(await given("CSV"));
+    expectEqual(xy.heads, ["position theta [rad]", "force measured theta [N]"], "what is over what");
+    expect(xy.rows.length > 100, `${xy.rows.length} places`);
+    expect((await given("SVG")).includes("position theta [rad]"), "the axis says its unit");
+    await page.getByRole("button", { name: "Spectrum" }).click();
+    await page.getByLabel("Spectrum of").selectOption("position theta");
+    const text = await until("it is there", async () => {
+      const reading = await page.locator(".scope_view:not([hidden]) .scope_reading").textContent();
+      return /Largest: .* at ([\d.]+) Hz/.exec(reading);
+    });
+    const { heads, rows } = tableOf(await given("CSV"));
+    expectEqual(heads, ["frequency [Hz]", "amplitude of position theta [rad]"], "what is over what");
+    const [hz] = rows.reduce((most, row) => (row[1] > most[1] ? row : most));
+    expect(Math.abs(hz - Number(text[1])) < 1e-3 * hz, `${hz} Hz, and the page says ${text[1]}`);
     expectNoComplaints(page);
   },
 

@@ -7,7 +7,7 @@ const words: Record<FileState, string> = {
   stopped: "has not come whole",
   ready: "ready",
   refused: "cannot be read",
-  importing: "is imported",
+  importing: "is being imported",
   done: "imported",
   failed: "not imported",
 };

@@ -112,13 +112,13 @@ export class ChartPage {
     this.root = element(
       "div",
       { class: "stack" },
+      element("div", { class: "two wide" }, this.plot.root, this.law.root),
       element(
         "p",
         { class: "quiet" },
         `Errors towards ${chart.reference}. JND ${withUnit(chart.jnd_n, "N")}; a tick is ${withUnit(1 / chart.rate_hz, "s")}.`,
         unjudged > 0 ? ` The stability of ${unjudged} of ${chart.points.length} points was not judged.` : null,
       ),
-      element("div", { class: "two wide" }, this.plot.root, this.law.root),
       choice.root,
       tableOf(chart.source, chart.points, (point) => this.open(chart.points.indexOf(point))),
       ...chart.notes.map((it) => element("p", { class: "quiet" }, it)),

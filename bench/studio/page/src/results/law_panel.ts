@@ -46,15 +46,13 @@ function parameterTable(law: LawView): HTMLElement {
   );
 }
 
-/** One law: what it is, its curve, its parameters, and a way to feel it. */
+/** One law: what it is, its curve, its parameters, and a way to feel it. Takes no room until one is open. */
 export class LawPanel {
-  readonly root = element("section", { class: "card law", "aria-label": "Law" });
+  readonly root = element("section", { class: "card law", "aria-label": "Law", hidden: true });
   private plot: Plot | null = null;
   private shown = "";
 
-  constructor(private readonly context: Context) {
-    this.root.append(element("p", { class: "quiet" }, "No law is open."));
-  }
+  constructor(private readonly context: Context) {}
 
   end(): void {
     this.plot?.end();
@@ -112,5 +110,6 @@ export class LawPanel {
       this.root.append(element("p", { class: "quiet" }, law.curve.range));
     }
     this.root.append(parameterTable(law), text);
+    this.root.hidden = false;
   }
 }

@@ -19,12 +19,16 @@ export function lawBeside(workspace: Workspace, result: WorkspaceFile, name: str
   return workspace.laws.find((it) => it.name === path);
 }
 
-/** The recordings that a result of that name may be of, likeliest first: results know their recording's stem. */
+/**
+ * The recordings that a result of that name may be of, likeliest first: results know their recording's stem and its UUID,
+ * which copies share.
+ */
 export function recordingsFor(workspace: Workspace, stem: string, uuid?: string): WorkspaceRecording[] {
   const whole = workspace.recordings.filter((it) => !it.partial);
   const rank = (it: WorkspaceRecording): number => {
-    if (uuid && it.uuid === uuid) return 0;
-    return it.name === `${stem}.h5` || it.name.endsWith(`/${stem}.h5`) ? 1 : 2;
+    const isNamed = it.name === `${stem}.h5` || it.name.endsWith(`/${stem}.h5`);
+    if (uuid && it.uuid === uuid) return isNamed ? 0 : 1;
+    return isNamed ? 2 : 3;
   };
   return whole.sort((one, other) => rank(one) - rank(other)); // which keeps the order of equals
 }

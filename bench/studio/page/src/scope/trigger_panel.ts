@@ -12,7 +12,7 @@ const modes: readonly { value: TriggerMode; text: string }[] = [
 ];
 const about = "auto lets time run where there is none, normal waits, single holds the first";
 
-/** What of it stands in the address. */
+/** What of it stands in the address; the level in the trace's own unit, whatever the picture shows it in. */
 export interface TriggerState {
   mode: string;
   trace: string;
@@ -24,6 +24,7 @@ export interface TriggerState {
 export class TriggerPanel {
   readonly root: HTMLElement;
   private traces: readonly Trace[] = [];
+  private isGiven = true; // the level is still that of the address
   private readonly mode: HTMLSelectElement;
   private readonly trace = select([], "", () => this.told(true));
   private readonly edge: HTMLSelectElement;
@@ -45,7 +46,6 @@ export class TriggerPanel {
       given.edge === "falling" ? "falling" : "rising",
       () => this.told(true),
     );
-    this.level.value = given.level || "0";
     this.mode.title = about;
     this.root = element(
       "div",
@@ -68,12 +68,20 @@ export class TriggerPanel {
       traces.map((it) => ({ value: it.name, text: inWords(it.name) })),
       chosen,
     );
+    const level = Number(this.given.level);
+    if (this.isGiven) this.level.value = Number.isFinite(level) ? inDigits(level / this.unitOfTrace().factor) : "0";
+    this.isGiven = traces.length === 0;
     this.told(false);
+  }
+
+  /** In which the level is typed, as the picture has it. */
+  private unitOfTrace(): { factor: number; text: string } {
+    return unitFor(1, this.traces.find((it) => it.name === this.trace.value)?.unit ?? "");
   }
 
   /** As it is set; the level in the trace's own unit. */
   get settings(): TriggerSettings {
-    const level = Number(this.level.value);
+    const level = Number(this.level.value) * this.unitOfTrace().factor;
     return {
       mode: this.mode.value as TriggerMode,
       trace: this.traces.findIndex((it) => it.name === this.trace.value),
@@ -89,10 +97,15 @@ export class TriggerPanel {
   private told(byHand: boolean): void {
     const off = this.mode.value === "off";
     for (const it of [this.trace, this.edge, this.level]) it.disabled = off;
-    const unit = this.traces.find((it) => it.name === this.trace.value)?.unit ?? "";
-    this.unit.textContent = unit ? `Level [${unitFor(1, unit).text || "1"}]` : "Level";
+    const known = this.traces.some((it) => it.name === this.trace.value);
+    this.unit.textContent = known ? `Level [${this.unitOfTrace().text || "1"}]` : "Level";
     if (!byHand) return;
-    const state = { mode: this.mode.value, trace: this.trace.value, edge: this.edge.value, level: this.level.value };
-    this.changed(state);
+    const { mode, edge, level } = this.settings;
+    this.changed({ mode, trace: this.trace.value, edge, level: inDigits(level) });
   }
+}
+
+/** Without what a unit's factor leaves behind the last digit. */
+function inDigits(value: number): string {
+  return String(Number(value.toPrecision(12)));
 }

@@ -2,9 +2,12 @@ import type { Api } from "../../api/api";
 import type { Trace } from "../../api/recordings";
 import { inWords } from "../../recordings/trace_groups";
 import { element, labelled, select, setOptions } from "../../ui/dom";
+import { figureOf, lineOf } from "../../ui/figure_description";
 import { Latest } from "../../ui/latest";
 import { plain, withUnit } from "../../ui/numbers";
 import { palette } from "../../ui/palette";
+import { exportMenu } from "../../ui/plot/out/export_menu";
+import type { Sheet } from "../../ui/plot/out/sheet";
 import { clipTo, drawAxes } from "./canvas_axes";
 import { firstLine, peakOf, powerOfTwo, spectrumOf, type Spectrum } from "./spectrum";
 
@@ -40,7 +43,13 @@ export class SpectrumView {
     this.root = element(
       "div",
       { class: "scope_view", hidden: true },
-      element("div", { class: "scope_bar" }, labelled("Spectrum of", this.trace), this.reading),
+      element(
+        "div",
+        { class: "scope_bar" },
+        labelled("Spectrum of", this.trace),
+        this.reading,
+        exportMenu(() => this.sheet()),
+      ),
       this.canvas,
     );
   }
@@ -82,6 +91,31 @@ export class SpectrumView {
       }, this.complain);
   }
 
+  private unit(): string {
+    return this.traces.find((it) => it.name === this.trace.value)?.unit ?? "";
+  }
+
+  /** What is drawn, from the first line that is. */
+  private sheet(): Sheet {
+    if (!this.spectrum) throw new Error("Nothing is drawn yet.");
+    const { amplitude, step_hz } = this.spectrum;
+    const lines = [...amplitude.keys()].slice(firstLine);
+    const name = `amplitude of ${inWords(this.trace.value)}`;
+    const drawn = lineOf(
+      "",
+      lines.map((k) => k * step_hz),
+      lines.map((k) => amplitude[k]!),
+      { width: 1 },
+    );
+    const over = {
+      curves: [drawn],
+      log_x: true,
+      log_y: true,
+      y_range: rangeOf(peakOf({ step_hz, amplitude }).amplitude),
+    };
+    return { name, figures: [figureOf("frequency [Hz]", `${name} [${this.unit()}]`, over)] };
+  }
+
   private choose(): void {
     this.wanted = this.trace.value;
     this.spectrum = null;
@@ -93,10 +127,9 @@ export class SpectrumView {
     const { spectrum } = this;
     if (!spectrum || this.root.hidden) return;
     const { amplitude, step_hz } = spectrum;
-    const trace = this.traces.find((it) => it.name === this.trace.value);
-    const unit = trace?.unit ?? "";
+    const unit = this.unit();
     const peak = peakOf(spectrum);
-    const top = Math.max(peak.amplitude, 1e-9) * 2;
+    const [bottom, top] = rangeOf(peak.amplitude);
     const text =
       peak.amplitude < 1e-12
         ? "It does not change."
@@ -105,7 +138,7 @@ export class SpectrumView {
     const axes = drawAxes(
       this.canvas,
       { from: firstLine * step_hz, to: step_hz * amplitude.length, unit: "Hz", name: "frequency", logarithmic: true },
-      { from: top * 1e-5, to: top, unit, name: `amplitude of ${inWords(this.trace.value)}`, logarithmic: true },
+      { from: bottom, to: top, unit, name: `amplitude of ${inWords(this.trace.value)}`, logarithmic: true },
     );
     if (!axes) return;
     const { context } = axes;
@@ -114,8 +147,14 @@ export class SpectrumView {
     context.lineWidth = 1.5;
     context.beginPath();
     for (let k = firstLine; k < amplitude.length; ++k)
-      context.lineTo(axes.x(k * step_hz), axes.y(Math.max(amplitude[k]!, top * 1e-6)));
+      context.lineTo(axes.x(k * step_hz), axes.y(Math.max(amplitude[k]!, 0.1 * bottom)));
     context.stroke();
     context.restore();
   }
+}
+
+/** Of the amplitudes that are drawn: five decades below twice the largest. */
+function rangeOf(largest: number): [number, number] {
+  const top = Math.max(largest, 1e-9) * 2;
+  return [1e-5 * top, top];
 }

@@ -1,5 +1,8 @@
 import { element, labelled, select, setOptions } from "../../ui/dom";
+import { figureOf, lineOf } from "../../ui/figure_description";
 import { palette } from "../../ui/palette";
+import { exportMenu } from "../../ui/plot/out/export_menu";
+import type { Sheet } from "../../ui/plot/out/sheet";
 import { columnsWithin, type TimeLine } from "../../ui/time/time_line";
 import { clipTo, drawAxes } from "./canvas_axes";
 
@@ -14,6 +17,7 @@ export class XyView {
   private readonly x = select([], "", () => this.choose());
   private readonly y = select([], "", () => this.choose());
   private lines: readonly TimeLine[] = [];
+  private shown = { from: 0, to: 0 };
 
   constructor(
     private wanted: { x: string; y: string },
@@ -22,7 +26,13 @@ export class XyView {
     this.root = element(
       "div",
       { class: "scope_view", hidden: true },
-      element("div", { class: "scope_bar" }, labelled("Across", this.x), labelled("Up", this.y)),
+      element(
+        "div",
+        { class: "scope_bar" },
+        labelled("Across", this.x),
+        labelled("Up", this.y),
+        exportMenu(() => this.sheet()),
+      ),
       this.canvas,
     );
   }
@@ -41,8 +51,8 @@ export class XyView {
   }
 
   draw(from: number, to: number): void {
-    const x = this.lines.find((it) => it.name === this.x.value);
-    const y = this.lines.find((it) => it.name === this.y.value);
+    this.shown = { from, to };
+    const [x, y] = this.chosen();
     if (!x || !y) return;
     const [first, end] = columnsWithin(x, from, to);
     const [across, up] = [rangeOf(x, first, end), rangeOf(y, first, end)];
@@ -76,6 +86,24 @@ export class XyView {
     context.arc(lastX, lastY, 5, 0, 2 * Math.PI);
     context.fill();
     context.restore();
+  }
+
+  private chosen(): [TimeLine | undefined, TimeLine | undefined] {
+    const line = (name: string): TimeLine | undefined => this.lines.find((it) => it.name === name);
+    return [line(this.x.value), line(this.y.value)];
+  }
+
+  /** What is drawn, in SI. */
+  private sheet(): Sheet {
+    const [x, y] = this.chosen();
+    const name = `${this.y.value} over ${this.x.value}`;
+    if (!x || !y) throw new Error("Nothing is drawn yet.");
+    const [first, end] = columnsWithin(x, this.shown.from, this.shown.to);
+    const columns = Array.from({ length: Math.max(0, end - first) }, (_, k) => first + k);
+    const values = (line: TimeLine): (number | null)[] =>
+      columns.map((k) => middle(line, k)).map((it) => (Number.isNaN(it) ? null : it));
+    const drawn = lineOf("", values(x), values(y), { width: 1 });
+    return { name, figures: [figureOf(`${x.name} [${x.unit}]`, `${y.name} [${y.unit}]`, { curves: [drawn] })] };
   }
 
   private choose(): void {
