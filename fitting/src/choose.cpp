@@ -12,7 +12,13 @@ namespace kerf::fitting {
 namespace {
 
 constexpr double nearly = 1.05;  ///< times the least error: cycles that differ much hide what a hand feels
-const Choice no_choice{.model = "", .why = "no law could be fitted"};
+
+Choice no_choice(std::span<const FitResult> results) {
+  return {.model = "",
+          .why = results.empty() ? "no law could be fitted"
+                                 : "of the laws that were fitted none converged to what explains the force "
+                                   "better than its mean does"};
+}
 
 /// The laws that are not out of the question; those that say no more than a simpler one only where there is
 /// no other.
@@ -35,7 +41,7 @@ const char* held_out_in_words(const FitResult& law, const FitOptions& options) {
 
 Choice least_bic(std::span<const FitResult> results) {
   const auto laws = eligible(results, [](const FitResult& law) { return law.bic; });
-  if (laws.empty()) return no_choice;
+  if (laws.empty()) return no_choice(results);
   const FitResult& best = **std::ranges::min_element(laws, {}, [](const FitResult* law) { return law->bic; });
   std::ostringstream why;
   why << best.model << " has the least BIC (" << std::fixed << std::setprecision(0) << best.bic
@@ -56,13 +62,17 @@ bool as_good_as(const FitResult& law, const FitResult& best, double jnd_n) {
          worse.mean <= worse.std_error;
 }
 
-Choice choose_simplest(std::span<const FitResult> results, const Series& series, const FitOptions& options) {
+Choice choose_simplest(std::span<const FitResult> results, const Series& series, const FitOptions& asked) {
+  // Of what a test leaves there may be too little for folds.
+  FitOptions options(asked);
+  const auto has_folds = [](const FitResult& law) { return !std::isnan(law.held_out_rmse()); };
+  if (std::ranges::none_of(results, has_folds)) options.folds = 0;
   if (options.folds == 0 && !(options.test_share > 0.0)) return least_bic(results);
   const auto error = [&](const FitResult& law) {
     return options.folds > 0 ? law.held_out_rmse() : law.held_out_test();
   };
   auto candidates = eligible(results, error);
-  if (candidates.empty()) return no_choice;
+  if (candidates.empty()) return no_choice(results);
   const double force_rms = rms_of(series);
   const double limit = options.jnd.at(force_rms);
   if (force_rms <= limit) {
