@@ -216,7 +216,7 @@ inline std::vector<double> measured(const Scenario& scenario, const Eigen::Vecto
 }
 
 inline fitting::FitResult fitted(const Scenario& scenario, const std::vector<double>& force,
-                                 const models::Options& options = {}) {
+                                 const models::Options& options = {}, double contact_error = 0.0) {
   std::vector<double> time_s;
   std::vector<double> penetration;
   std::vector<double> velocity;
@@ -230,7 +230,8 @@ inline fitting::FitResult fitted(const Scenario& scenario, const std::vector<dou
                                       .penetration = penetration,
                                       .velocity = velocity,
                                       .force = force,
-                                      .cycle = scenario.cycle},
+                                      .cycle = scenario.cycle,
+                                      .contact_error = contact_error},
                       {.law_options = options, .folds = 0});
 }
 

@@ -102,6 +102,31 @@ TEST(Uncertainty, OfCyclesDoesNotGrowWithAMisfitThatRepeats) {
   EXPECT_NEAR(uncertainty_of(data, 0.95).covariance(0, 0), before, 1e-9 * before);
 }
 
+// F = k x: with x off by e, known to s, the stiffness moves by k s sum(x) / sum(x^2); of two runs each by its
+// own share. The quantile is that of the normal law where this is all there is.
+TEST(Uncertainty, OfWhereThePenetrationIsZeroMovesAStiffnessByItsShare) {
+  constexpr Eigen::Index n = 2000;
+  Linearisation spring{.jacobian = Eigen::VectorXd::LinSpaced(n, 0.5, 1.5),
+                       .residuals = test::Noise::white().draw(n, 1e-6, 5)};
+  const Eigen::VectorXd x = spring.jacobian;
+  const auto exact = uncertainty_of(spring, 0.95);
+  spring.contact_shift = Eigen::VectorXd::Constant(n, 0.1);
+  const auto one = uncertainty_of(spring, 0.95);
+  const double whole = 0.1 * x.sum() / x.squaredNorm();
+  EXPECT_NEAR(one.covariance(0, 0) - exact.covariance(0, 0), whole * whole, 1e-9 * whole * whole);
+  EXPECT_NEAR(one.quantile[0], 1.959964, 1e-6);
+  EXPECT_EQ(one.correlation_time, exact.correlation_time) << "it is no noise";
+
+  spring.run_ends = {n / 2, n};
+  const auto two = uncertainty_of(spring, 0.95);
+  const double first = 0.1 * x.head(n / 2).sum() / x.squaredNorm();
+  const double second = 0.1 * x.tail(n / 2).sum() / x.squaredNorm();
+  EXPECT_NEAR(two.covariance(0, 0), first * first + second * second, 1e-6 * whole * whole);
+
+  spring.contact_shift = Eigen::VectorXd::Ones(3);
+  EXPECT_THROW((void)uncertainty_of(spring, 0.95), std::invalid_argument);
+}
+
 TEST(Uncertainty, OfAPerfectFitIsNone) {
   const auto result = uncertainty_of(waves(2'000, Eigen::VectorXd::Zero(2'000)), 0.95);
   EXPECT_EQ(result.covariance(0, 0), 0.0);
@@ -243,6 +268,34 @@ TEST(Intervals, CoverTheTruthUnderLowPassedNoise) {
 }
 TEST(Intervals, OfCyclesCoverTheTruth) {
   expect_coverage(by_hand("kelvin", test::kelvin(0.3), 10.0), test::Noise::first_order("", 0.9));
+}
+// Where the penetration is zero is off by as much as is said of it: without that hardly any interval holds.
+TEST(Intervals, CoverTheTruthWhereTheContactIsOffByWhatIsSaidOfIt) {
+  constexpr int trials = 150;
+  constexpr double error_m = 2e-3;
+  const test::Scenario scenario{"", "kelvin", test::kelvin(0.3), test::strokes(4.0, 0.1), {}};
+  const std::vector<double> truth = test::targets(scenario);
+  const Eigen::VectorXd offsets = test::Noise::white().draw(trials, error_m, 77);
+  std::vector<int> covered(truth.size(), 0);
+  std::vector<int> taken_for_exact(truth.size(), 0);
+  for (int i = 0; i < trials; ++i) {
+    const auto noise = test::Noise::white().draw(static_cast<Eigen::Index>(scenario.path.size()), 0.02,
+                                                 3000 + static_cast<std::uint64_t>(i));
+    test::Scenario seen(scenario);
+    for (models::Motion& motion : seen.path) motion.penetration += offsets[i];
+    const std::vector<double> force = test::measured(scenario, noise);
+    const auto estimates = test::fitted(seen, force, {}, error_m).parameters;
+    const auto exact = test::fitted(seen, force).parameters;
+    for (std::size_t k = 0; k < truth.size(); ++k) {
+      covered[k] += test::holds(estimates[k], truth[k]) ? 1 : 0;
+      taken_for_exact[k] += test::holds(exact[k], truth[k]) ? 1 : 0;
+    }
+  }
+  for (std::size_t k = 0; k < truth.size(); ++k) {
+    EXPECT_GE(covered[k], 134) << k;
+    EXPECT_LE(covered[k], 149) << k;
+  }
+  EXPECT_LE(taken_for_exact[0], 75);
 }
 // A law that misfits has best parameters too, and the noise alone decides how well they are known.
 TEST(Intervals, OfCyclesCoverTheBestParametersOfALawThatMisfits) {
