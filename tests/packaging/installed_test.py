@@ -48,13 +48,13 @@ class Installed(unittest.TestCase):
                   "-o", "punch.h5")
         self.assertGreater(json.loads(self.kerf("info", "punch.h5", "--json"))["samples"], 1000)
         self.kerf("fit", "punch.h5", "--models", "kelvin", "--no-folds", "-o", "fits")
-        self.kerf("check", "fits/kelvin.law.toml", "--virtual", "--seconds", "0.1")
+        self.kerf("check", "fits/kelvin.law.toml", "--virtual", "--seconds", "1")
         self.kerf("record", "--virtual", "--scene", str(examples / "scenes/palpation.scene.toml"), "--seconds", "0.1",
                   "-o", "cut.h5")
 
     def test_keeps_its_helpers_where_nobody_types_their_names(self):
         helpers = {path.name for path in (self.prefix / "libexec/kerf").iterdir()}
-        self.assertEqual(helpers, {"kerf-device-host", "kerf-guard", "kerf-law-trial", "kerf-reader"})
+        self.assertEqual(helpers, {"kerf-device-host", "kerf-guard", "kerf-law-trial", "kerf-reader", "kerf-unpack"})
         self.assertEqual({path.name for path in (self.prefix / "bin").iterdir()}, {"kerf", "kerf-emulate"})
 
     def test_takes_no_reader_from_elsewhere(self):

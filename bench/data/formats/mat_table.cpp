@@ -230,9 +230,8 @@ std::size_t usual_length(const std::vector<MatColumn>& columns) {
   return length;
 }
 
-Columns columns_of(std::string_view bytes, const MatCopy& copy, const UnpackedLimits& limits) {
-  const std::unique_ptr<mat_t, CloseMat> mat(Mat_Open(copy.path().c_str(), MAT_ACC_RDONLY));
-  copy.remove_name();
+Columns columns_of(std::string_view bytes, const std::string& path, const UnpackedLimits& limits) {
+  const std::unique_ptr<mat_t, CloseMat> mat(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
   if (!mat)
     throw std::invalid_argument(
         fmt::format("{}: a MAT-file that cannot be opened: is it whole?", limits.name));
@@ -283,33 +282,24 @@ std::string quoted(const std::vector<std::string>& names) {
 
 }  // namespace
 
-MatCopy::MatCopy(std::string_view bytes) {
-  if (is_hdf5(bytes)) {
-    std::tie(file_, name_) = named_file();
-  } else {
-    file_ = memfd_create("kerf-mat", MFD_CLOEXEC);
-    if (file_ < 0) throw std::system_error(errno, std::generic_category(), "no file in memory");
-  }
+MatName::MatName(std::string_view bytes) {
+  if (!is_mat(bytes) || !is_hdf5(bytes)) return;
+  int file = -1;
+  std::tie(file, name_) = named_file();
   while (!bytes.empty()) {
-    const ssize_t written = ::write(file_, bytes.data(), bytes.size());
+    const ssize_t written = ::write(file, bytes.data(), bytes.size());
     if (written <= 0) {
       const int why = errno;
-      remove_name();
-      ::close(file_);
+      ::close(file);
+      ::unlink(name_.c_str());
       throw std::system_error(why, std::generic_category(), "no room for a file in memory");
     }
     bytes.remove_prefix(static_cast<std::size_t>(written));
   }
+  ::close(file);
 }
 
-MatCopy::~MatCopy() {
-  remove_name();
-  ::close(file_);
-}
-
-std::string MatCopy::path() const { return name_.empty() ? fmt::format("/proc/self/fd/{}", file_) : name_; }
-
-void MatCopy::remove_name() const noexcept {
+MatName::~MatName() {
   if (!name_.empty()) ::unlink(name_.c_str());
 }
 
@@ -319,8 +309,8 @@ bool is_mat(std::string_view bytes) noexcept {
   return bytes.starts_with("MATLAB") && (order == "IM" || order == "MI");
 }
 
-MatTable mat_table(std::string_view bytes, const MatCopy& copy, const UnpackedLimits& limits) {
-  const Columns columns = columns_of(bytes, copy, limits);
+MatTable mat_table(std::string_view bytes, const std::string& path, const UnpackedLimits& limits) {
+  const Columns columns = columns_of(bytes, path, limits);
   const std::size_t length = usual_length(columns.all);
   const std::string objects =
       columns.objects.empty() ? "" : about_object(columns.objects.front(), is_hdf5(bytes));

@@ -14,23 +14,20 @@ struct MatTable {
   std::vector<std::string> notes;
 };
 
-/// A file with these bytes that has a path: matio reads files only, and what comes may be a pipe or packed.
-/// It lies in memory. HDF5 asks for a name that is no link, so a file of 7.3 has one until it is opened, and
-/// whoever made the copy removes it if the reader fell.
-class MatCopy {
+/// A MAT-file of 7.3 under a name of its own, in memory: HDF5 asks for one that is no link. Of any other
+/// bytes it has none.
+class MatName {
  public:
   /// @throws std::system_error if there is no room for it.
-  explicit MatCopy(std::string_view bytes);
-  MatCopy(const MatCopy&) = delete;
-  MatCopy& operator=(const MatCopy&) = delete;
-  ~MatCopy();
+  explicit MatName(std::string_view bytes);
+  MatName(const MatName&) = delete;
+  MatName& operator=(const MatName&) = delete;
+  ~MatName();
 
-  [[nodiscard]] std::string path() const;
-  void remove_name() const noexcept;
+  [[nodiscard]] const std::string& name() const noexcept { return name_; }
 
  private:
-  int file_ = -1;
-  std::string name_;  ///< empty of a file without one
+  std::string name_;
 };
 
 /// A MAT-file of level 5 (MATLAB 5 to 7.2, and later by -v7 or -v6), or one of 7.3, which is HDF5.
@@ -40,8 +37,11 @@ class MatCopy {
 /// many rows as NAME[1], NAME[2], ...; fields of a struct as NAME.FIELD. A struct `units` of texts has the
 /// unit of each column by its name. Numbers lose nothing. What has another length, is no number, or a whole
 /// one beyond 2^53, which no double holds, is named in the notes.
+/// matio reads files only: `path` has the same bytes. matio believes what a file says of itself: call it in a
+/// process of its own (unpacked_apart.h).
 /// @throws std::invalid_argument for a file that is damaged or has no two such columns;
 ///         tables, timetables and other objects are named with how to save what they hold.
-[[nodiscard]] MatTable mat_table(std::string_view bytes, const MatCopy& copy, const UnpackedLimits& limits);
+[[nodiscard]] MatTable mat_table(std::string_view bytes, const std::string& path,
+                                 const UnpackedLimits& limits);
 
 }  // namespace kerf::bench

@@ -13,6 +13,7 @@
 
 #include "files/trimmed.h"
 #include "import/spatial/spatial_columns.h"
+#include "import/text/unit_words.h"
 
 namespace kerf::bench {
 namespace {
@@ -96,11 +97,19 @@ std::string column_list(const TextLayout& layout) {
 
 Unit unit_for(const MapEntry& entry, const TextColumn& column, const std::string& name) {
   const std::string& text = entry.unit.empty() ? column.unit : entry.unit;
+  const auto kinds = kinds_of(entry.channel);
+  if (text.empty() && !column.unknown_unit.empty()) {
+    const bool is_raw = is_raw_unit(column.unknown_unit);
+    throw std::invalid_argument(fmt::format(
+        "{}: column '{}' for {} is in {} as the file says, which is no unit known here; say {}: {}={}[{} {}]",
+        name, entry.column, entry.channel, column.unknown_unit,
+        is_raw ? "how many are one" : "what one of it is", entry.channel, entry.column,
+        is_raw ? "counts/1000" : "0.001", kinds.empty() ? "1" : kinds.front()));
+  }
   if (text.empty()) {
     throw std::invalid_argument(fmt::format(
         "{}: column '{}' for {} has no unit in the file; give one in brackets: {}={}[{}]{}", name,
-        entry.column, entry.channel, entry.channel, entry.column,
-        kinds_of(entry.channel).empty() ? "1" : kinds_of(entry.channel).front(),
+        entry.column, entry.channel, entry.channel, entry.column, kinds.empty() ? "1" : kinds.front(),
         entry.channel == "time" ? "; moments are read as 2026-01-31T12:00:00.000 or 31.01.2026 12:00:00.000"
                                 : ""));
   }
@@ -110,12 +119,11 @@ Unit unit_for(const MapEntry& entry, const TextColumn& column, const std::string
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(fmt::format("--map: {}: {}", entry.channel, error.what()));
   }
-  const auto kinds = kinds_of(entry.channel);
   if (!kinds.empty() && std::find(kinds.begin(), kinds.end(), unit.si) == kinds.end()) {
     throw std::invalid_argument(
         fmt::format("--map: {} in '{}' is not a unit of {}; expected one of the kind {}{}", entry.channel,
                     text, entry.channel, fmt::join(kinds, " or "),
-                    kinds.front() == "N" && unit.si == "kg" ? "; a weight is written gf or kgf" : ""));
+                    kinds.front() == "N" && unit.si == "kg" ? "; a weight is written gf, kgf or lbf" : ""));
   }
   return unit;
 }
@@ -235,9 +243,11 @@ std::string describe_columns(const TextLayout& layout, std::string_view text) {
   std::string description;
   for (std::size_t i = 0; i < layout.columns.size(); ++i) {
     const TextColumn& column = layout.columns[i];
+    const std::string unit = !column.unknown_unit.empty() ? fmt::format(" [{}?]", column.unknown_unit)
+                             : column.unit.empty()        ? ""
+                                                          : fmt::format(" [{}]", column.unit);
     description += fmt::format("{}  {}  {}{}: ", i == 0 ? "" : "\n", i + 1,
-                               column.name.empty() ? "(no name)" : column.name,
-                               column.unit.empty() ? "" : fmt::format(" [{}]", column.unit));
+                               column.name.empty() ? "(no name)" : column.name, unit);
     for (const auto& line : lines) {
       if (i < line.size()) description += fmt::format("{} ", to_utf8(line[i]));
     }

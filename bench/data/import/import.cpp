@@ -19,6 +19,7 @@
 #include "import/suggest/suggested_map.h"
 #include "import/text/irregular_lines.h"
 #include "import/text/text_table.h"
+#include "import/text/thousands.h"
 #include "import/trials.h"
 #include "import/unit_doubts.h"
 #include "recordings/provenance.h"
@@ -250,11 +251,7 @@ Imported recording_of(const ReadFile& read, TextTable table, const std::string& 
   imported.parse_seconds = read.seconds;
   MappedRows rows(std::move(table), imported.columns);
   imported.bad_lines = rows.bad_lines();
-  if (rows.size() == 0) {
-    throw std::invalid_argument(
-        fmt::format("{}: no line has a number in every mapped column; its columns are\n{}", name,
-                    describe_columns(imported.layout, read.file.text())));
-  }
+  if (rows.size() == 0) refuse_without_rows(read.file.text(), imported.layout, imported.columns, name);
   if (options.strict && !imported.bad_lines.empty()) {
     throw std::invalid_argument(
         fmt::format("{}: {} lines are not data: {}; without --strict they are left out", name,
@@ -328,8 +325,11 @@ std::vector<std::string> import_trials(const std::filesystem::path& file, const 
 std::string explain_columns(const std::filesystem::path& file, const ImportOptions& options) {
   const FileText mapped(file, {.max_bytes = options.max_bytes, .sheet = options.sheet});
   const TextLayout layout = find_layout(mapped.text(), mapped.name());
-  return fmt::format("its columns are\n{}\nfor example {}", describe_columns(layout, mapped.text()),
-                     suggest_map(layout, mapped.text()));
+  const SuggestedMap suggested = suggest_map(layout, mapped.text());
+  std::string text = fmt::format("its columns are\n{}", describe_columns(layout, mapped.text()));
+  for (const std::string& remark : suggested.remarks) text += "\n" + remark;
+  if (!suggested.map.empty()) text += "\nfor example " + suggested.in_words();
+  return text;
 }
 
 }  // namespace kerf::bench

@@ -155,6 +155,12 @@ class Resampler {
   }
 
   [[nodiscard]] std::vector<double> smoothed(const std::vector<double>& values) const {
+    constexpr double most_grid_rows = 1e8;
+    if (!(from_.back() / period_s_ < most_grid_rows))
+      throw std::invalid_argument(fmt::format(
+          "the other file takes {:.4g} s with a row every {:.3g} s where it has any, too many to be "
+          "smoothed; expected no such gaps: cut it first",
+          from_.back(), period_s_));
     std::vector<double> grid;
     for (std::size_t i = 0; static_cast<double>(i) * period_s_ <= from_.back(); ++i)
       grid.push_back(static_cast<double>(i) * period_s_);

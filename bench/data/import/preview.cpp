@@ -168,10 +168,9 @@ ImportPreview preview_import(const std::filesystem::path& head, const std::strin
                         .irregular = {},
                         .imported = {},
                         .problem = {}};
-  const std::string words = suggest_map(preview.layout, text.text());  // --map 'MAP', and what else it takes
-  const std::size_t begin = words.find('\'') + 1;
-  preview.suggested = words.substr(begin, words.rfind('\'') - begin);
-  preview.suggests_time = words.find(" --rate ") == std::string::npos;
+  const SuggestedMap suggested = suggest_map(preview.layout, text.text());
+  preview.suggested = suggested.map;
+  preview.suggests_time = suggested.rate.empty();
   if (!options.map.empty()) {
     ImportOptions of_head = options;
     of_head.sheet.clear();  // it was taken when the head was made

@@ -33,6 +33,27 @@ bool are_the_same(const Unit& a, const Unit& b) {
   return a.si == b.si && std::abs(a.factor - b.factor) <= rounding * std::abs(b.factor);
 }
 
+/// What weighs a mass: "g" as "gf".
+bool is_weight_of(const Unit& mass, const Unit& force) {
+  constexpr double standard_gravity = 9.80665;
+  return mass.si == "kg" && force.si == "N" &&
+         are_the_same({.factor = mass.factor * standard_gravity, .si = "N", .offset = 0.0}, force);
+}
+
+/// Whether a map has the unit that the file says. A sign or a factor before it is a scale that somebody
+/// chose.
+bool fits(const Unit& said, const std::string& text_said, const MappedColumn& column) {
+  if (are_the_same(said, column.unit)) return true;
+  const Unit of_map = parse_unit(without_factor(column.unit_text));
+  return are_the_same(parse_unit(without_factor(text_said)), of_map) || is_weight_of(said, of_map);
+}
+
+/// A unit alone, without how many numbers are one.
+bool is_symbol(const std::string& text) {
+  const std::vector<std::string> symbols = all_symbols();
+  return text != "1" && std::ranges::find(symbols, text) != symbols.end();
+}
+
 std::string unit_text_of(const Imported& imported, const std::string& channel) {
   const auto found = std::ranges::find(imported.columns, channel, &MappedColumn::channel);
   return found == imported.columns.end() ? std::string() : found->unit_text;
@@ -93,8 +114,16 @@ std::vector<std::string> unit_doubts(const Imported& imported) {
   std::vector<std::string> doubts;
   for (const MappedColumn& column : imported.columns) {
     const TextColumn& heading = imported.layout.columns[column.index];
+    const std::string& unknown = heading.unknown_unit;
+    if (!unknown.empty() && unknown != column.unit_text && is_symbol(column.unit_text)) {
+      doubts.push_back(fmt::format(
+          "column {} '{}' is in {} as the file says, and mapped to {} in {} one to one; how many "
+          "are one {}?",
+          column.index + 1, heading.heading, unknown, column.channel, column.unit_text, column.unit_text));
+    }
     const auto said = unit_of_heading(heading.unit);
-    if (column.unit_from_file || column.unit.si == "1" || !said || are_the_same(*said, column.unit)) continue;
+    if (column.unit_from_file || column.unit.si == "1" || !said || fits(*said, heading.unit, column))
+      continue;
     doubts.push_back(
         fmt::format("column {} '{}' is in {} as the file says, and mapped to {} in {}; which is right?",
                     column.index + 1, heading.heading, heading.unit, column.channel, column.unit_text));

@@ -66,7 +66,7 @@ AxisSeries axis_series(const schema::Recording& recording, std::size_t axis, con
     series.velocity.push_back(motion.velocity);
     series.force.push_back(resisting(force[at], measured, contact));
   }
-  if (recording.cycles) {
+  if (recording.cycles && recording.cycles->axis == axis) {  // those of another axis are none along this one
     series.cycle.assign(recording.rows(), 0);
     for (const schema::PhaseSpan& phase : recording.cycles->phases) {
       if (phase.begin > phase.end || phase.end > recording.rows())

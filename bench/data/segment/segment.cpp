@@ -14,6 +14,7 @@
 #include "recordings/axis_values.h"
 #include "recordings/provenance.h"
 #include "segment/branches.h"
+#include "segment/closing_direction.h"
 #include "segment/strokes.h"
 #include "signal/quantiles.h"
 #include "signal/row_noise.h"
@@ -82,20 +83,6 @@ std::vector<Turn> find_turns(const AxisMotion& motion, double height) {
   }
   if (direction != 0) turns.push_back(direction > 0 ? highest : lowest);
   return turns;
-}
-
-/// The work done along strokes that raise the position, less that along those that lower it.
-double work_of_rising(const AxisMotion& motion, const std::vector<Turn>& turns) {
-  double rising = 0.0;
-  double falling = 0.0;
-  for (std::size_t i = 1; i < turns.size(); ++i) {
-    double work = 0.0;
-    for (std::uint64_t row = turns[i - 1].row + 1; row <= turns[i].row; ++row) {
-      work += motion.force(row) * std::abs(motion.position(row) - motion.position(row - 1));
-    }
-    (turns[i].closed ? rising : falling) += work;
-  }
-  return rising - falling;
 }
 
 void check(const schema::RecordedRows& rows, const SegmentOptions& options) {
@@ -184,8 +171,8 @@ schema::Cycles find_cycles(const schema::RecordedRows& rows, const SegmentOption
   schema::Cycles cycles;
   cycles.axis = options.axis;
   cycles.filter_corner_hz = motion.corner_hz();
-  cycles.closing_direction = options.closing_direction ? *options.closing_direction
-                                                       : (work_of_rising(motion, turns) >= 0.0 ? 1.0 : -1.0);
+  cycles.closing_direction =
+      options.closing_direction ? *options.closing_direction : direction_of_closing(motion, turns);
   motion.close_along(cycles.closing_direction);
   if (cycles.closing_direction < 0.0) {
     for (Turn& turn : turns) turn = {.row = turn.row, .position = -turn.position, .closed = !turn.closed};

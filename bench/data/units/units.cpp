@@ -14,80 +14,25 @@
 #include <fmt/ranges.h>
 
 #include "files/trimmed.h"
+#include "units/unit_symbols.h"
 
 namespace kerf::bench {
 namespace {
 
-constexpr double standard_gravity = 9.80665;  // [m/s^2], by definition; makes gram-force a force
-constexpr double inch = 0.0254;               // exact, since 1959
-constexpr double pound = 0.45359237;          // likewise [kg]
-
-struct Symbol {
-  std::string_view text;
-  double factor;
-  std::string_view si;
-};
-
-constexpr std::array symbols{
-    Symbol{"1", 1.0, "1"},
-    Symbol{"s", 1.0, "s"},
-    Symbol{"ms", 1e-3, "s"},
-    Symbol{"us", 1e-6, "s"},
-    Symbol{"µs", 1e-6, "s"},
-    Symbol{"ns", 1e-9, "s"},
-    Symbol{"min", 60.0, "s"},
-    Symbol{"h", 3600.0, "s"},
-    Symbol{"m", 1.0, "m"},
-    Symbol{"cm", 1e-2, "m"},
-    Symbol{"mm", 1e-3, "m"},
-    Symbol{"um", 1e-6, "m"},
-    Symbol{"µm", 1e-6, "m"},
-    Symbol{"in", inch, "m"},
-    Symbol{"ft", 12.0 * inch, "m"},
-    Symbol{"rad", 1.0, "rad"},
-    Symbol{"mrad", 1e-3, "rad"},
-    Symbol{"deg", std::numbers::pi / 180.0, "rad"},
-    Symbol{"°", std::numbers::pi / 180.0, "rad"},
-    Symbol{"rev", 2.0 * std::numbers::pi, "rad"},
-    Symbol{"rpm", std::numbers::pi / 30.0, "rad/s"},
-    Symbol{"N", 1.0, "N"},
-    Symbol{"mN", 1e-3, "N"},
-    Symbol{"kN", 1e3, "N"},
-    Symbol{"gf", 1e-3 * standard_gravity, "N"},
-    Symbol{"kgf", standard_gravity, "N"},
-    Symbol{"lbf", pound* standard_gravity, "N"},
-    Symbol{"ozf", pound / 16.0 * standard_gravity, "N"},
-    Symbol{"Nm", 1.0, "N·m"},
-    Symbol{"mNm", 1e-3, "N·m"},
-    Symbol{"J", 1.0, "J"},
-    Symbol{"mJ", 1e-3, "J"},
-    Symbol{"kJ", 1e3, "J"},
-    Symbol{"V", 1.0, "V"},
-    Symbol{"mV", 1e-3, "V"},
-    Symbol{"A", 1.0, "A"},
-    Symbol{"mA", 1e-3, "A"},
-    Symbol{"Hz", 1.0, "Hz"},
-    Symbol{"Pa", 1.0, "Pa"},
-    Symbol{"kPa", 1e3, "Pa"},
-    Symbol{"MPa", 1e6, "Pa"},
-    Symbol{"bar", 1e5, "Pa"},
-    Symbol{"psi", pound* standard_gravity / (inch * inch), "Pa"},
-    Symbol{"degC", 1.0, "°C"},
-    Symbol{"°C", 1.0, "°C"},
-    Symbol{"degF", 1.0 / 1.8, "°C"},
-    Symbol{"°F", 1.0 / 1.8, "°C"},
-    Symbol{"kg", 1.0, "kg"},
-    Symbol{"g", 1e-3, "kg"},
-    Symbol{"%", 1e-2, "1"},
-};
-
 const Symbol& find_symbol(std::string_view text, std::string_view whole) {
-  const auto* const place =
-      std::find_if(symbols.begin(), symbols.end(), [&](const Symbol& symbol) { return symbol.text == text; });
-  if (place != symbols.end()) return *place;
+  if (const Symbol* const found = symbol_called(text)) return *found;
   std::string known;
-  for (const Symbol& symbol : symbols) known += fmt::format("{}{}", known.empty() ? "" : " ", symbol.text);
+  for (const Symbol& symbol : unit_symbols())
+    known += fmt::format("{}{}", known.empty() ? "" : " ", symbol.text);
   throw std::invalid_argument(fmt::format("unknown unit '{}' in '{}'; known are {}", text, whole, known));
+}
+
+/// How many of what the file has are one unit, which is to be told: "? N", as a proposed map has it.
+void require_no_question(std::string_view text) {
+  if (!text.starts_with('?')) return;
+  const std::string_view unit = trimmed(text.substr(1));
+  throw std::invalid_argument(fmt::format(
+      "write for ? in '{}' how many {} one of the file's units is, as in 0.001 {}", text, unit, unit));
 }
 
 /// Takes a leading number ("0.0439 deg", "1/mm") off the text.
@@ -105,6 +50,11 @@ double take_counts_per(std::string_view& text) {
   constexpr std::string_view word = "counts/";
   if (!text.starts_with(word)) return 1.0;
   std::string_view rest = text.substr(word.size());
+  if (rest.starts_with('?')) {
+    const std::string_view unit = trimmed(rest.substr(1));
+    throw std::invalid_argument(fmt::format(
+        "write for ? in '{}' how many counts are one {}, as in counts/1000 {}", text, unit, unit));
+  }
   double counts = 0.0;
   const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), counts);
   const std::string_view unit = trimmed(rest.substr(static_cast<std::size_t>(end - rest.data())));
@@ -152,6 +102,7 @@ std::string joined(const Parts& parts) { return fmt::format("{}", fmt::join(part
 Unit parse_unit(std::string_view given) {
   std::string_view text = trimmed(given);
   if (text.empty()) throw std::invalid_argument("an empty unit; write 1 for a plain number");
+  require_no_question(text);
   const double of_a_count = take_counts_per(text);
   Unit unit{.factor = of_a_count * take_factor(text), .si = {}, .offset = 0.0};
   const bool is_fahrenheit = text == "degF" || text == "°F";
@@ -185,10 +136,17 @@ Unit parse_unit(std::string_view given) {
   return unit;
 }
 
+std::string_view without_factor(std::string_view text) {
+  text = trimmed(text);
+  (void)take_counts_per(text);
+  (void)take_factor(text);
+  return text;
+}
+
 std::vector<std::string> symbols_of(std::string_view si) {
   std::vector<std::string> texts;
   std::vector<double> factors;
-  for (const Symbol& symbol : symbols) {
+  for (const Symbol& symbol : unit_symbols()) {
     if (symbol.si != si || std::ranges::find(factors, symbol.factor) != factors.end()) continue;
     factors.push_back(symbol.factor);
     texts.emplace_back(symbol.text);
@@ -201,9 +159,8 @@ std::vector<std::string> symbols_of(std::string_view si) {
 
 std::vector<std::string> all_symbols() {
   std::vector<std::string> texts;
-  for (const Symbol& symbol : symbols) {
-    const bool is_another_spelling =
-        symbol.text == "µs" || symbol.text == "µm" || symbol.text.starts_with("°");
+  for (const Symbol& symbol : unit_symbols()) {
+    const bool is_another_spelling = symbol.text.starts_with("µ") || symbol.text.starts_with("°");
     if (!is_another_spelling) texts.emplace_back(symbol.text);
   }
   return texts;

@@ -20,12 +20,15 @@ struct Unit {
   friend bool operator==(const Unit&, const Unit&) = default;
 };
 
-/// Reads a unit: symbols with SI prefixes where usual (`ms s us min h`, `m cm mm um in ft`, `rad mrad deg
-/// rev`, `rpm`, `N mN kN gf kgf lbf ozf`, `Nm mNm`, `J mJ kJ`, `V mV`, `A mA`, `Hz`, `Pa kPa MPa bar psi`,
-/// `degC` (kept as it is), `degF` (in a product or quotient a difference), `kg g`, `%`, `1`), products with
-/// `·` or `*`, quotients with `/`, powers with `²`, `³`, `^2` or `^3`.
-/// @throws std::invalid_argument that names the symbol and lists those known.
+/// Reads a unit: the symbols of unit_symbols() and their other spellings, products with `·` or `*`, quotients
+/// with `/`, powers with `²`, `³`, `^2` or `^3`. `degC` is kept as it is, `degF` in a product or quotient is
+/// a difference.
+/// @throws std::invalid_argument that names the symbol and lists those known, and for a `?` where a factor is
+///         to be told.
 [[nodiscard]] Unit parse_unit(std::string_view text);
+
+/// A unit as it is written, without the factor before it: "N" of "-0.5 N" and of "counts/1000 N".
+[[nodiscard]] std::string_view without_factor(std::string_view text);
 
 /// The symbols that stand for a unit of SI, "s ms us min h" of "s": of those that say the same the first. Of
 /// a quotient by s, as "m/s", those of what is above, by s.

@@ -40,15 +40,13 @@ const char* separator_name(char separator) {
 /// them is left to a guess.
 std::string map_of_headings(const TextLayout& layout, std::string_view text, const std::string& name) {
   if (layout.header_line == 0) return "";
-  const std::string words = suggest_map(layout, text);  // --map 'MAP', and what else it takes
-  const auto begin = words.find('\'') + 1;
-  const auto end = words.rfind('\'');
-  if (end + 1 != words.size()) return "";  // there is no time
-  const std::string map = words.substr(begin, end - begin);
-  const std::vector<MappedColumn> columns = match_columns(parse_map(map), layout, name);
+  const SuggestedMap suggested = suggest_map(layout, text);
+  if (!suggested.rate.empty() || !suggested.remarks.empty() || suggested.map.find('?') != std::string::npos)
+    return "";
+  const std::vector<MappedColumn> columns = match_columns(parse_map(suggested.map), layout, name);
   const bool all_known = std::ranges::all_of(
       columns, [&](const MappedColumn& column) { return !layout.columns[column.index].unit.empty(); });
-  return all_known && columns.size() == 3 ? map : "";
+  return all_known && columns.size() == 3 ? suggested.map : "";
 }
 
 /// @throws std::invalid_argument for what is no text of numbers, or does not fit the map.

@@ -83,7 +83,11 @@ Chart drawer_chart(const DrawerRecording& drawn, const StudyPlan& plan, const st
   Curve bad{.label = "flagged", .colour = Colour::vermillion, .mark = Mark::points, .width = point_size};
   Curve beyond{
       .label = "no blank there", .colour = Colour::purple, .mark = Mark::points, .width = point_size};
-  Curve good{.label = "counts", .colour = Colour::black, .mark = Mark::points, .width = point_size};
+  const bool is_left_out = !drawn.file.blank && !drawn.counts();
+  Curve good{.label = is_left_out ? "left out" : "counts",
+             .colour = is_left_out ? Colour::grey : Colour::black,
+             .mark = Mark::points,
+             .width = point_size};
   for (std::size_t i = 0; i < whole.force.size(); ++i) {
     const bool is_idle = !counted.counts.empty() && counted.counts[i] == 0;
     const bool is_flagged =
@@ -95,7 +99,7 @@ Chart drawer_chart(const DrawerRecording& drawn, const StudyPlan& plan, const st
     curve.x.push_back(unit.factor * whole.penetration[i]);
     curve.y.push_back(whole.force[i]);
   }
-  const char* const standing = drawn.file.blank ? " (blank)" : drawn.counts() ? "" : " (left out)";
+  const char* const standing = drawn.file.blank ? " (blank)" : is_left_out ? " (left out)" : "";
   Chart chart{.title = drawn.name + standing,
               .x_label = fmt::format("penetration [{}]", unit.unit),
               .y_label = fmt::format("force [{}]", recording.axes[axis].force_unit)};

@@ -49,13 +49,13 @@ void fuzz_table(std::string_view text, const TextLayout& layout) {
   }
 }
 
-/// The map that is suggested is one, and the options beside it.
+/// The map that is suggested is one, where nothing is left to be told, and the options beside it.
 ImportOptions suggested(const TextLayout& layout, std::string_view text) {
-  const std::string suggestion = bench::suggest_map(layout, text);
-  const auto begin = suggestion.find('\'') + 1;
+  const bench::SuggestedMap suggestion = bench::suggest_map(layout, text);
   ImportOptions options;
-  options.map = bench::parse_map(std::string_view(suggestion).substr(begin, suggestion.rfind('\'') - begin));
-  if (suggestion.ends_with("--rate 100")) options.rate_hz = 100.0;
+  const bool is_whole = !suggestion.map.empty() && suggestion.map.find('?') == std::string::npos;
+  options.map = bench::parse_map(is_whole ? suggestion.map : "position=1[mm]");
+  if (!suggestion.rate.empty()) options.rate_hz = 100.0;
   return options;
 }
 

@@ -2,114 +2,138 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstddef>
 #include <optional>
-#include <vector>
+#include <tuple>
+#include <utility>
 
 #include <fmt/core.h>
-#include <fmt/ranges.h>
 
 #include "import/column_map.h"
+#include "import/suggest/column_facts.h"
+#include "import/suggest/stated_rate.h"
 #include "import/suggest/time_column.h"
+#include "import/text/unit_words.h"
 #include "units/units.h"
 
 namespace kerf::bench {
 namespace {
 
-/// What a heading begins with, and the unit that is usual for it where the file says none.
-struct KnownName {
-  std::string_view word;
-  std::string_view channel;
-  std::string_view unit;
-};
-
-constexpr std::array known_names{
-    KnownName{"time", "time", "s"},
-    KnownName{"timestamp", "time", "s"},
-    KnownName{"t", "time", "s"},
-    KnownName{"zeit", "time", "s"},
-    KnownName{"temps", "time", "s"},
-    KnownName{"tiempo", "time", "s"},
-    KnownName{"elapsed", "time", "s"},
-    KnownName{"seconds", "time", "s"},
-    KnownName{"position", "position", "mm"},
-    KnownName{"pos", "position", "mm"},
-    KnownName{"x", "position", "mm"},
-    KnownName{"displacement", "position", "mm"},
-    KnownName{"travel", "position", "mm"},
-    KnownName{"depth", "position", "mm"},
-    KnownName{"extension", "position", "mm"},
-    KnownName{"weg", "position", "mm"},
-    KnownName{"angle", "position", "deg"},
-    KnownName{"theta", "position", "deg"},
-    KnownName{"force", "force", "N"},
-    KnownName{"load", "force", "N"},
-    KnownName{"f", "force", "N"},
-    KnownName{"fz", "force", "N"},
-    KnownName{"kraft", "force", "N"},
-    KnownName{"torque", "force", "Nm"},
-};
-
-/// The first word of a heading, in small letters.
-std::string first_word(std::string_view heading) {
-  std::string word;
-  for (const char c : heading) {
-    if (std::isalpha(static_cast<unsigned char>(c)) == 0) break;
-    word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  }
-  return word;
-}
-
-const KnownName* known_name(const TextColumn& column) {
-  const std::string word = first_word(column.name);
-  const auto* const found = std::ranges::find(known_names, std::string_view(word), &KnownName::word);
-  return found == known_names.end() ? nullptr : found;
-}
-
 class Suggestion {
  public:
   Suggestion(const TextLayout& layout, std::string_view text)
-      : layout_(layout), text_(text), taken_(layout.columns.size(), false) {}
+      : layout_(layout), text_(text), facts_(facts_of(layout, text)), taken_(layout.columns.size(), false) {}
 
-  std::string in_words() {
+  SuggestedMap made() {
     const bool units_known =
         std::ranges::any_of(layout_.columns, [](const TextColumn& column) { return !column.unit.empty(); });
     const bool has_time = by_unit("time") || by_name("time") || by_ticking() ||
-                          (!units_known && layout_.columns.size() > 2 && by_place("time", "s"));
-    if (!by_unit("position") && !by_name("position")) by_place("position", "mm");
-    if (!by_unit("force") && !by_name("force")) by_place("force", "N");
-    return fmt::format("--map '{}'{}", fmt::join(entries_, ","), has_time ? "" : " --rate 100");
+                          (!units_known && layout_.columns.size() > 2 && by_place("time", "s", 3));
+    const bool has_position = by_unit("position") || by_name("position");
+    const bool has_force = by_unit("force") || by_weight() || by_name("force");
+    const std::size_t open = (has_position ? 0U : 1U) + (has_force ? 0U : 1U);
+    if (!has_position && !by_place("position", "mm", open)) say_missing("position", "mm");
+    if (!has_force && !by_place("force", "N", open)) say_missing("force", "N");
+    for (const auto& entry : entries_) {
+      if (!entry.empty()) suggested_.map += (suggested_.map.empty() ? "" : ",") + entry;
+    }
+    if (!has_time) suggest_rate();
+    return std::move(suggested_);
   }
 
  private:
   bool take(std::size_t column, std::string_view channel, std::string_view unit) {
     taken_[column] = true;
-    entries_.push_back(fmt::format("{}={}[{}]", channel, column + 1, unit));
+    const TextColumn& of = layout_.columns[column];
+    if (of.stamps) {
+      entry_of(channel) = fmt::format("{}={}", channel, column + 1);
+      return true;
+    }
+    // How many of these are one unit nobody but the lab knows.
+    const bool is_known = of.unknown_unit.empty() || unit.starts_with('?');
+    const char* const how_many = is_known ? "" : is_raw_unit(of.unknown_unit) ? "counts/? " : "? ";
+    if (!is_known && !is_raw_unit(of.unknown_unit))
+      suggested_.remarks.push_back(
+          fmt::format("column {} is in {}, which is no unit known here: write for ? how many {} one of it is",
+                      column + 1, of.unknown_unit, unit));
+    entry_of(channel) = fmt::format("{}={}[{}{}]", channel, column + 1, how_many, unit);
     return true;
+  }
+
+  std::string& entry_of(std::string_view channel) {
+    return entries_[channel == "time" ? 0 : channel == "position" ? 1 : 2];
+  }
+
+  [[nodiscard]] bool is_open(std::size_t column) const {
+    const ColumnFacts& facts = facts_[column];
+    return !taken_[column] && facts.holds_numbers && !facts.words.counts && !facts.words.is_other;
+  }
+
+  /// The first of those whose heading says most of what they are. Of moments that stand still another one.
+  template <typename Fits>
+  std::optional<std::size_t> best_of(std::string_view channel, const Fits& fits) const {
+    std::optional<std::tuple<bool, Naming, std::size_t>> best;
+    for (std::size_t i = 0; i < taken_.size(); ++i) {
+      const ColumnWords& words = facts_[i].words;
+      if (!is_open(i) || !fits(i)) continue;
+      const Naming naming = words.says(channel) ? words.naming : Naming::none;
+      const std::tuple worth(facts_[i].is_coarse, channel == "time" ? Naming::none : naming, i);
+      if (!best || worth < *best) best = worth;
+    }
+    return best ? std::optional(std::get<2>(*best)) : std::nullopt;
+  }
+
+  /// What its heading says is another thing is none, whatever its unit.
+  [[nodiscard]] bool may_be(std::size_t column, std::string_view channel) const {
+    const ColumnWords& words = facts_[column].words;
+    return words.known == nullptr || words.known->word.size() == 1 || words.says(channel);
   }
 
   bool by_unit(std::string_view channel) {
     const auto kinds = kinds_of(channel);
-    for (std::size_t i = 0; i < taken_.size(); ++i) {
+    const auto found = best_of(channel, [&](std::size_t i) {
       const std::string& unit = layout_.columns[i].unit;
-      if (taken_[i] || unit.empty()) continue;
-      if (std::ranges::find(kinds, parse_unit(unit).si) != kinds.end()) return take(i, channel, unit);
-    }
-    return false;
+      return !unit.empty() && may_be(i, channel) &&
+             std::ranges::find(kinds, parse_unit(unit).si) != kinds.end();
+    });
+    return found && take(*found, channel, layout_.columns[*found].unit);
+  }
+
+  /// A force that the file has as what it weighs.
+  bool by_weight() {
+    constexpr std::array weights{std::pair("g", "gf"), std::pair("kg", "kgf"), std::pair("mg", "0.001 gf"),
+                                 std::pair("lb", "lbf"), std::pair("oz", "ozf")};
+    const auto weight_of = [&](std::size_t i) -> const char* {
+      const std::string& unit = layout_.columns[i].unit;
+      if (unit.empty() || parse_unit(unit).si != "kg") return nullptr;
+      const auto* const found = std::ranges::find_if(
+          weights, [&](const auto& weight) { return parse_unit(weight.first) == parse_unit(unit); });
+      return found == weights.end() ? nullptr : found->second;
+    };
+    const auto found = best_of(
+        "force", [&](std::size_t i) { return facts_[i].words.says("force") && weight_of(i) != nullptr; });
+    if (!found) return false;
+    suggested_.remarks.push_back(fmt::format("column {} is in {}, a mass: what weighs that is a force in {}",
+                                             *found + 1, layout_.columns[*found].unit, weight_of(*found)));
+    return take(*found, "force", weight_of(*found));
   }
 
   /// A column whose unit says that it is another thing is none, whatever its name.
   bool by_name(std::string_view channel) {
-    for (std::size_t i = 0; i < taken_.size(); ++i) {
-      const KnownName* const known = known_name(layout_.columns[i]);
-      if (taken_[i] || known == nullptr || known->channel != channel || !layout_.columns[i].unit.empty())
-        continue;
-      if (channel != "time") return take(i, channel, known->unit);
-      const auto ticking = find_time_column(layout_, text_, {i});
-      return take(i, channel, ticking ? usual_unit_of_time(ticking->step) : std::string(known->unit));
-    }
-    return false;
+    const auto found = best_of(channel, [&](std::size_t i) {
+      return facts_[i].words.says(channel) && layout_.columns[i].unit.empty();
+    });
+    if (!found) return false;
+    const std::string usual = usual_unit(*found);
+    if (channel != "time") return take(*found, channel, usual);
+    const auto ticking = find_time_column(layout_, text_, {*found});
+    return take(*found, channel, ticking ? usual_unit_of_time(ticking->step) : usual);
+  }
+
+  /// ROS counts in m, N and N·m.
+  [[nodiscard]] std::string usual_unit(std::size_t column) const {
+    const std::string unit(facts_[column].words.known->unit);
+    return unit == "mm" && layout_.columns[column].name.starts_with("field.") ? "m" : unit;
   }
 
   bool by_ticking() {
@@ -117,33 +141,62 @@ class Suggestion {
     std::vector<std::size_t> open;
     for (std::size_t i = 0; i < taken_.size(); ++i) {
       const TextColumn& column = layout_.columns[i];
-      if (column.unit.empty() && known_name(column) == nullptr) open.push_back(i);
+      const bool are_rows = layout_.header_line > 0 && column.heading.empty();  // of R, and of "#"
+      if (facts_[i].may_be_anything && column.unknown_unit.empty() && !are_rows) open.push_back(i);
     }
     const auto found = find_time_column(layout_, text_, open);
     return found && take(found->index, "time", usual_unit_of_time(found->step));
   }
 
-  /// The first column of which nothing is known, else the first one; of the time the former alone.
-  bool by_place(std::string_view channel, std::string_view unit) {
-    std::size_t first = taken_.size();
+  /// The first column of which nothing is known, if it has no heading, or no more have one than there are
+  /// channels open.
+  bool by_place(std::string_view channel, std::string_view unit, std::size_t channels) {
+    std::vector<std::size_t> open;
     for (std::size_t i = 0; i < taken_.size(); ++i) {
-      if (taken_[i]) continue;
-      if (known_name(layout_.columns[i]) == nullptr) return take(i, channel, unit);
-      first = std::min(first, i);
+      if (!taken_[i] && facts_[i].may_be_anything) open.push_back(i);
     }
-    return channel != "time" && first < taken_.size() && take(first, channel, unit);
+    if (open.empty()) return false;
+    const bool has_heading = !layout_.columns[open.front()].heading.empty();
+    return (!has_heading || open.size() <= channels) && take(open.front(), channel, unit);
+  }
+
+  void say_missing(std::string_view channel, std::string_view unit) {
+    suggested_.remarks.push_back(
+        fmt::format("no column says that it is the {0}: add {0}=COLUMN[{1}]", channel, unit));
+  }
+
+  void suggest_rate() {
+    const auto rate = stated_rate(text_.substr(0, std::min(layout_.data_begin, text_.size())));
+    suggested_.rate = rate ? fmt::format("{:g}", *rate) : "HZ";
+    const auto named = std::ranges::find_if(
+        facts_, [](const ColumnFacts& facts) { return !facts.holds_numbers && facts.words.says("time"); });
+    const std::string why =
+        named == facts_.end()
+            ? "no column says that it is the time"
+            : fmt::format(
+                  "column {} is the time by its name, but '{}' is neither a number nor a moment that is read",
+                  named - facts_.begin() + 1, to_utf8(named->first_field));
+    suggested_.remarks.push_back(
+        rate ? fmt::format("{}: the lines before the data say --rate {}", why, suggested_.rate)
+             : why + ": write for HZ how many rows are a second, or add time=COLUMN[s]");
   }
 
   const TextLayout& layout_;
   std::string_view text_;
+  std::vector<ColumnFacts> facts_;
   std::vector<bool> taken_;
-  std::vector<std::string> entries_;
+  std::array<std::string, 3> entries_;  // time, position, force
+  SuggestedMap suggested_;
 };
 
 }  // namespace
 
-std::string suggest_map(const TextLayout& layout, std::string_view text) {
-  return Suggestion(layout, text).in_words();
+std::string SuggestedMap::in_words() const {
+  return fmt::format("--map '{}'{}", map, rate.empty() ? "" : " --rate " + rate);
+}
+
+SuggestedMap suggest_map(const TextLayout& layout, std::string_view text) {
+  return Suggestion(layout, text).made();
 }
 
 }  // namespace kerf::bench

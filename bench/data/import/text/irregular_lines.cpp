@@ -6,33 +6,52 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include "clocks/time_stamp.h"
+#include "files/trimmed.h"
 #include "import/decimal.h"
+#include "import/text/thousands.h"
 
 namespace kerf::bench {
 namespace {
 
 constexpr std::size_t max_lines_named = 10;
 
-/// Whether a field is a number whose digits stand in groups: 1,234.5 or 1.234,5 or -12,345,678.
-bool has_groups(std::string_view field) {
-  if (field.starts_with('-') || field.starts_with('+')) field.remove_prefix(1);
-  std::size_t digits = 0;
-  std::size_t groups = 0;
-  char separator = '\0';
-  for (std::size_t i = 0; i <= field.size(); ++i) {
-    const char c = i < field.size() ? field[i] : '\0';
-    if (c >= '0' && c <= '9') {
-      ++digits;
-      continue;
+/// The first cell of a mapped column that is no number in a line that has something in it.
+struct BadCell {
+  const MappedColumn* column = nullptr;
+  std::string_view text;
+  std::size_t line = 0;
+};
+
+BadCell first_bad_cell(std::string_view text, const TextLayout& layout,
+                       const std::vector<MappedColumn>& columns) {
+  std::string_view rest = text.substr(layout.data_begin);
+  for (std::size_t number = layout.preamble_lines + 1; !rest.empty(); ++number) {
+    const std::string_view line = take_line(rest);
+    if (trimmed(line).empty()) continue;
+    const auto fields = split_line(line, layout.separator);
+    for (const MappedColumn& column : columns) {
+      const std::string_view field = column.index < fields.size() ? fields[column.index] : "";
+      TimeStamp stamp;
+      const bool is_value =
+          layout.columns[column.index].stamps ? is_time_stamp(field, stamp) : is_decimal(field, layout.point);
+      if (!is_value) return {.column = &column, .text = field, .line = number};
     }
-    const bool is_whole_group = groups == 0 ? digits >= 1 && digits <= 3 : digits == 3;
-    if (!is_whole_group) return false;
-    if (separator == '\0' && (c == ',' || c == '.' || c == '\'')) separator = c;
-    if (c != separator || i == field.size()) return groups > 0 && (c == ',' || c == '.' || i == field.size());
-    ++groups;
-    digits = 0;
   }
-  return false;
+  return {};
+}
+
+/// What is to be done about a cell that is no number.
+std::string advice_on(const BadCell& cell, char point) {
+  const bool is_clock = std::ranges::count(cell.text, ':') >= 1 && cell.column->channel == "time";
+  if (is_clock)
+    return "times of day are not read, and moments as 2026-01-31T12:00:00.000 or 31.01.2026 12:00:00.000: "
+           "map "
+           "no time and give --rate HZ";
+  if (is_decimal(cell.text, point == '.' ? ',' : '.') || has_groups(cell.text))
+    return "write the file anew with one decimal sign in all columns, and no groups of thousands";
+  if (cell.text.empty()) return "map a column that has a number in each line";
+  return "map another column, or write the file anew";
 }
 
 }  // namespace
@@ -81,31 +100,19 @@ void report_irregular_lines(Imported& imported) {
   }
 }
 
-void require_no_groups(std::string_view text, const TextLayout& layout,
-                       const std::vector<MappedColumn>& columns, const TextTable& table,
-                       const std::string& name) {
-  constexpr std::size_t looked_at = 1000;
-  std::string_view rest = text.substr(layout.data_begin);
-  std::size_t number = table.first_line;
-  for (std::size_t i = 0; i < std::min(table.bad_lines.size(), looked_at); ++i) {
-    while (number < table.bad_lines[i]) {
-      (void)take_line(rest);
-      ++number;
-    }
-    std::string_view line = rest;
-    const auto fields = split_line(take_line(line), layout.separator);
-    for (const MappedColumn& column : columns) {
-      if (column.index >= fields.size()) continue;
-      const std::string_view field = fields[column.index];
-      if (is_decimal(field, layout.point) || !has_groups(field))
-        continue;  // 3.958, of a line that lacks another
-      throw std::invalid_argument(
-          fmt::format("{}:{}: column {} holds '{}', a number in groups of thousands; expected digits with "
-                      "one decimal sign and "
-                      "nothing between them: write the file anew without groups",
-                      name, number, column.index + 1, field));
-    }
+void refuse_without_rows(std::string_view text, const TextLayout& layout,
+                         const std::vector<MappedColumn>& columns, const std::string& name) {
+  const BadCell cell = first_bad_cell(text, layout, columns);
+  if (cell.column == nullptr) {
+    throw std::invalid_argument(
+        fmt::format("{}: no line has a number in every mapped column; its columns are\n{}", name,
+                    describe_columns(layout, text)));
   }
+  throw std::invalid_argument(fmt::format(
+      "{}:{}: column {}, mapped to {}, holds '{}', and no line has a number in every mapped column; expected "
+      "numbers with the decimal sign '{}': {}; its columns are\n{}",
+      name, cell.line, cell.column->index + 1, cell.column->channel, to_utf8(cell.text), layout.point,
+      advice_on(cell, layout.point), describe_columns(layout, text)));
 }
 
 }  // namespace kerf::bench

@@ -23,10 +23,9 @@ void require_most_lines(const Imported& imported, const std::string& name);
 /// Tells of lines that are no data or stand at a wrong time, in warnings and events.
 void report_irregular_lines(Imported& imported);
 
-/// A file whose numbers have groups from a thousand on loses its largest ones, and those alone.
-/// @throws std::invalid_argument that names the first, among the first bad lines.
-void require_no_groups(std::string_view text, const TextLayout& layout,
-                       const std::vector<MappedColumn>& columns, const TextTable& table,
-                       const std::string& name);
+/// Why no line of a file is a row: the first cell of a mapped column that is none.
+/// @throws std::invalid_argument that names it, and lists the columns.
+[[noreturn]] void refuse_without_rows(std::string_view text, const TextLayout& layout,
+                                      const std::vector<MappedColumn>& columns, const std::string& name);
 
 }  // namespace kerf::bench

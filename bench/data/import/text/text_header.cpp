@@ -1,8 +1,6 @@
 #include "import/text/text_header.h"
 
 #include <algorithm>
-#include <cctype>
-#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -10,74 +8,50 @@
 
 #include "files/trimmed.h"
 #include "import/decimal.h"
-#include "units/units.h"
+#include "import/text/named_column.h"
+#include "import/text/said_columns.h"
+#include "import/text/unit_words.h"
 
 namespace kerf::bench {
 namespace {
 
-/// "Time [ms]" -> {"Time", "ms"}; "t_s" -> {"t_s", "s"}: the name keeps what may be part of it.
-TextColumn named_column(std::string_view field) {
-  const std::string heading = to_utf8(trimmed(field));
-  TextColumn column{.heading = heading, .name = heading, .unit = {}};
-  const auto known = [](std::string_view text) {
-    try {
-      (void)parse_unit(text);
-      return true;
-    } catch (const std::invalid_argument&) {
-      return false;
-    }
-  };
-  for (const auto& brackets : {std::string_view("[]"), std::string_view("()")}) {
-    const auto open = column.name.rfind(brackets[0]);
-    if (open == std::string::npos || open == 0 || column.name.back() != brackets[1]) continue;
-    const std::string unit = column.name.substr(open + 1, column.name.size() - open - 2);
-    if (!known(unit)) continue;
-    column.unit = unit;
-    column.name = std::string(trimmed(std::string_view(column.name).substr(0, open)));
-    return column;
-  }
-  const auto underscore = column.name.rfind('_');
-  if (underscore != std::string::npos && underscore > 0) {
-    const std::string unit = column.name.substr(underscore + 1);
-    const bool is_word =
-        unit == "in" || unit == "h" || unit == "rev";  // of a voltage in, a hand's h, a revision
-    if (!unit.empty() && std::isalpha(static_cast<unsigned char>(unit[0])) && known(unit) && !is_word)
-      column.unit = unit;
-  }
-  return column;
-}
+/// A row that may be of units: its fields without brackets, and how many of them are what.
+struct UnitsRow {
+  std::vector<std::string> units;  ///< a field each, empty of blank cells
+  std::size_t filled = 0;
+  std::size_t known = 0;
+  std::size_t raw = 0;
+  std::size_t sure = 0;       ///< known, raw or in brackets
+  std::size_t may_be = 0;     ///< these, or written as units are
+  bool has_brackets = false;  ///< somewhere
 
-/// "M[1]", "M[2]": of columns of one name the numbers in brackets are none's units.
-void take_numbers_for_names(std::vector<TextColumn>& columns) {
-  const auto is_number = [](std::string_view text) {
-    return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
-  };
-  const std::vector<TextColumn> named(columns);
-  for (TextColumn& column : columns) {
-    const auto of_its_name = std::ranges::count(named, column.name, &TextColumn::name);
-    if (of_its_name > 1 && is_number(column.unit) && column.heading.ends_with(']'))
-      column = {.heading = column.heading, .name = column.heading, .unit = {}};
-  }
-}
+  /// "raw, counts" alone may as well be names.
+  [[nodiscard]] bool are_units() const { return filled > 0 && sure == filled && raw < filled; }
+  /// Enough below a line of names.
+  [[nodiscard]] bool are_mostly_units() const { return known > 0 && 2 * may_be > filled; }
+};
 
-/// The unit in a field of a units row, "(mm)" or "[N]" or "mm"; none if it does not look like one.
-std::optional<std::string> unit_field(std::string_view field) {
-  if (field.empty()) return std::string();
-  const bool bracketed = field.size() > 2 && ((field.front() == '(' && field.back() == ')') ||
-                                              (field.front() == '[' && field.back() == ']'));
-  const std::string unit(bracketed ? field.substr(1, field.size() - 2) : field);
-  try {
-    (void)parse_unit(unit);
-    return unit;
-  } catch (const std::invalid_argument&) {
-    if (bracketed) return std::string();  // a units row all the same, with a unit that is not known here
-    return std::nullopt;
+UnitsRow as_units_row(const std::vector<std::string_view>& fields) {
+  UnitsRow row;
+  for (std::string_view field : fields) {
+    field = trimmed(field);
+    const bool bracketed = field.size() > 2 && ((field.front() == '(' && field.back() == ')') ||
+                                                (field.front() == '[' && field.back() == ']'));
+    if (bracketed) field = trimmed(field.substr(1, field.size() - 2));
+    const std::string unit = to_utf8(field);
+    row.units.push_back(unit);
+    if (unit.empty()) continue;
+    const bool is_known = is_known_unit(unit);
+    const bool is_raw = is_raw_unit(unit) && !bracketed;
+    const bool is_sure = is_known || is_raw || bracketed;
+    row.has_brackets = row.has_brackets || bracketed;
+    ++row.filled;
+    row.known += is_known ? 1 : 0;
+    row.raw += is_raw ? 1 : 0;
+    row.sure += is_sure ? 1 : 0;
+    row.may_be += is_sure || looks_like_unit(unit) ? 1 : 0;
   }
-}
-
-bool is_units_row(const std::vector<std::string_view>& fields) {
-  return std::any_of(fields.begin(), fields.end(), [](auto f) { return !f.empty(); }) &&
-         std::all_of(fields.begin(), fields.end(), [](auto f) { return unit_field(f).has_value(); });
+  return row;
 }
 
 std::string_view without_comment_sign(std::string_view line) {
@@ -100,36 +74,97 @@ bool may_be_halves(const std::vector<std::string_view>& fields) {
                       [](auto field) { return field.find('.') != std::string_view::npos; });
 }
 
+/// "2ND PEAK FORCE = ---" says something of the file.
+bool says_a_value(const std::vector<std::string_view>& fields) {
+  const auto is_dashes = [](std::string_view field) {
+    return !field.empty() && field.find_first_not_of('-') == std::string_view::npos;
+  };
+  return (!fields.empty() && fields.front().find(" = ") != std::string_view::npos) ||
+         std::ranges::any_of(fields, is_dashes);
+}
+
+/// Whether a line has a name for most columns; a sentence before the data does not.
+bool may_be_header(const std::vector<std::string_view>& fields, std::size_t width) {
+  return 2 * fields.size() > width && (fields.size() > 1 || width == 1) && !says_a_value(fields);
+}
+
+/// Whether a line is one of names, for units to stand below.
+bool are_names(const std::vector<std::string_view>& fields, std::size_t width) {
+  const auto is_name = [](std::string_view field) {
+    return !trimmed(field).empty() && !is_decimal(field, '.') && !is_decimal(field, ',');
+  };
+  const auto names = static_cast<std::size_t>(std::ranges::count_if(fields, is_name));
+  return may_be_header(fields, width) && 2 * names > width && !as_units_row(fields).are_units();
+}
+
+/// Columns without names are called by their units, where those stand as names do.
+void take_units(TextLayout& layout, const UnitsRow& row, bool are_nameless) {
+  for (std::size_t i = 0; i < std::min(row.units.size(), layout.columns.size()); ++i) {
+    const std::string& unit = row.units[i];
+    TextColumn& column = layout.columns[i];
+    if (unit.empty()) continue;
+    (is_known_unit(unit) ? column.unit : column.unknown_unit) = unit;
+    if (are_nameless && !row.has_brackets) column.heading = column.name = unit;
+  }
+}
+
+/// The lines before the data that say something, split, from the last one up.
+class FilledLines {
+ public:
+  FilledLines(std::span<const std::string_view> preamble, char separator)
+      : preamble_(preamble), separator_(separator), left_(preamble.size()) {
+    skip_empty();
+  }
+  [[nodiscard]] bool is_empty() const { return left_ == 0; }
+  [[nodiscard]] std::size_t number() const { return left_; }
+  [[nodiscard]] std::vector<std::string_view> fields() const {
+    return is_empty() ? std::vector<std::string_view>()
+                      : split_line(without_comment_sign(preamble_[left_ - 1]), separator_);
+  }
+  void go_up() {
+    --left_;
+    skip_empty();
+  }
+
+ private:
+  void skip_empty() {
+    while (left_ > 0 && trimmed(preamble_[left_ - 1]).empty()) --left_;
+  }
+  std::span<const std::string_view> preamble_;
+  char separator_;
+  std::size_t left_;
+};
+
 }  // namespace
 
 HeaderLine read_header(TextLayout& layout, std::span<const std::string_view> preamble, std::size_t width) {
   layout.columns.resize(width);
-  std::vector<std::size_t> filled;
-  for (std::size_t i = 0; i < preamble.size(); ++i) {
-    if (!trimmed(preamble[i]).empty()) filled.push_back(i);
-  }
-  if (filled.empty()) return {};
-  auto fields = split_line(without_comment_sign(preamble[filled.back()]), layout.separator);
-  std::vector<std::string> units;
-  if (is_units_row(fields)) {
-    layout.units_line = filled.back() + 1;
-    for (const auto field : fields) units.push_back(*unit_field(field));
-    filled.pop_back();
-    if (!filled.empty()) fields = split_line(without_comment_sign(preamble[filled.back()]), layout.separator);
+  if (const HeaderLine said = read_said_columns(layout, preamble, width); said.number > 0) return said;
+  FilledLines lines(preamble, layout.separator);
+  if (lines.is_empty()) return {};
+  FilledLines above = lines;
+  above.go_up();
+  auto fields = lines.fields();
+  const UnitsRow row = as_units_row(fields);
+  const bool has_units = row.are_units() || (row.are_mostly_units() && are_names(above.fields(), width));
+  if (has_units) {
+    layout.units_line = lines.number();
+    lines = above;
+    fields = lines.fields();
   }
   HeaderLine header;
-  // A header has a name for most columns; a sentence before the data does not.
-  if (!filled.empty() && 2 * fields.size() > width && (fields.size() > 1 || width == 1)) {
-    layout.header_line = filled.back() + 1;
+  if (!lines.is_empty() && may_be_header(fields, width)) {
+    layout.header_line = lines.number();
+    layout.columns = named_columns(fields);
     layout.columns.resize(std::max(width, fields.size()));
-    for (std::size_t i = 0; i < fields.size(); ++i) layout.columns[i] = named_column(fields[i]);
-    take_numbers_for_names(layout.columns);
     header = {.number = layout.header_line, .names = fields.size()};
-  } else if (!filled.empty() && layout.separator == ',' && may_name_columns(fields)) {
-    header = {.number = filled.back() + 1, .names = fields.size(), .is_sure = false};
+  } else if (!lines.is_empty() && layout.separator == ',' && may_name_columns(fields)) {
+    header = {.number = lines.number(), .names = fields.size(), .is_sure = false};
   }
-  for (std::size_t i = 0; i < std::min(units.size(), layout.columns.size()); ++i) {
-    if (!units[i].empty()) layout.columns[i].unit = units[i];
+  if (has_units) {
+    take_units(layout, row, layout.header_line == 0);
+  } else {
+    read_said_units(layout, preamble, width);
   }
   return header;
 }

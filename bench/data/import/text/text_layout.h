@@ -16,6 +16,10 @@ struct TextColumn {
   std::string name;     ///< the heading without its unit
   std::string
       unit;  ///< from the units row, or from the name ("Time [ms]", "Load (N)", "t_s"); empty if unknown
+  /// What the file says in place of a unit of ours: raw numbers before anything is done to them ("counts"),
+  /// or a unit that is not known here ("dyn"). How many are one of ours has to be told. Empty where the file
+  /// says a unit that is known, or nothing.
+  std::string unknown_unit;
   /// Of a column of time stamps the first one; its unit is s whatever its name says.
   std::optional<TimeStamp> stamps;
 };

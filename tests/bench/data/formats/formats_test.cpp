@@ -1,17 +1,15 @@
 #include <cmath>
-#include <csignal>
 #include <fstream>
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "formats/cell_format.h"
 #include "formats/file_text.h"
 #include "formats/gzip.h"
 #include "formats/mat_table.h"
-#include "formats/run_apart.h"
+#include "formats/unpacked_apart.h"
 #include "formats/utf16.h"
 #include "import/import.h"
 #include "support/measured_data.h"
@@ -323,8 +321,8 @@ TEST(MatFile, HasItsVectorsAsColumns) {
 TEST(MatFile, OfVersion73LeavesNoCopy) {
   std::string path;
   {
-    const MatCopy copy(test::read_text(made("punch73.mat")));
-    path = copy.path();
+    const MatName copy(test::read_text(made("punch73.mat")));
+    path = copy.name();
     EXPECT_TRUE(std::filesystem::exists(path));
   }
   EXPECT_FALSE(std::filesystem::exists(path));
@@ -349,21 +347,16 @@ TEST(MatFile, OfVersion73IsReadAlike) {
   EXPECT_THAT(one.warnings, Contains(HasSubstr("run.who is no vector or matrix of real numbers")));
 }
 
-TEST(RunApart, BringsBackWhatIsSaidAndOutlivesAFall) {
-  const UnpackedLimits limits{.name = "x.mat", .at_most = 1U << 20U};
-  EXPECT_EQ(run_apart(limits, [] { return std::string("told"); }), "told");
-  EXPECT_THAT([&] { (void)run_apart(limits, []() -> std::string { throw std::invalid_argument("no"); }); },
-              ThrowsMessage<std::invalid_argument>("no"));
-  EXPECT_THAT([&] { (void)run_apart(limits, []() -> std::string { _exit(0); }); },
-              ThrowsMessage<std::invalid_argument>(HasSubstr("x.mat: it is damaged")));
-  EXPECT_THAT(
-      [&] {
-        (void)run_apart(limits, []() -> std::string {
-          kill(getpid(), SIGKILL);
-          return {};
-        });
-      },
-      ThrowsMessage<std::invalid_argument>(HasSubstr("its reader fell over it")));
+TEST(UnpackedApart, BringsBackWhatIsSaidAndOutlivesAFall) {
+  const UnpackedLimits limits{.name = "x.xls", .at_most = 1U << 20U};
+  const Unpacked told{.sheet = "Run 1", .notes = {"one", "two"}, .text = "a\tb\n1\t2\n"};
+  const Unpacked again = unpacked_from(answer_of(told));
+  EXPECT_EQ(again.sheet, told.sheet);
+  EXPECT_EQ(again.notes, told.notes);
+  EXPECT_EQ(again.text, told.text);
+  EXPECT_THAT([] { (void)unpacked_from(refusal_of("no")); }, ThrowsMessage<std::invalid_argument>("no"));
+  EXPECT_THAT([&] { (void)unpacked_apart("PK no workbook", "", limits); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("x.xls")));
 }
 
 TEST_F(BadFile, OfMatlabThatIsCutIsRefused) {

@@ -69,11 +69,125 @@ TEST(TextLayout, FindsUnitsInTheHeader) {
   EXPECT_EQ(layout.columns[3].unit, "");
 }
 
+TEST(TextLayout, KnowsRawNumbersFromUnits) {
+  const TextLayout named = layout_of("t_s,Encoder [counts],Force (raw),Count (left)\n0,1,2,3\n1,2,3,4\n");
+  EXPECT_EQ(named.columns[1].name, "Encoder");
+  EXPECT_EQ(named.columns[1].unit, "");
+  EXPECT_EQ(named.columns[1].unknown_unit, "counts");
+  EXPECT_EQ(named.columns[2].unknown_unit, "raw");
+  EXPECT_EQ(named.columns[3].unknown_unit, "");
+  EXPECT_EQ(named.columns[3].name, "Count (left)");
+  const TextLayout below = layout_of("t,x,F\ns,mm,counts\n0,1,2\n1,2,3\n");
+  EXPECT_EQ(below.units_line, 2U);
+  EXPECT_EQ(below.columns[2].unknown_unit, "counts");
+  EXPECT_EQ(layout_of("raw,counts\n0,1\n1,2\n").columns[0].name, "raw") << "names";
+}
+
 TEST(TextLayout, TakesNoWordAtTheEndOfANameForAUnit) {
   const TextLayout layout = layout_of("v_in,width (in),flow_h,f_N\n0,1,2,3\n1,2,3,4\n");
   EXPECT_EQ(layout.columns[0].unit, "") << "what goes in, not inches";
   EXPECT_EQ(layout.columns[1].unit, "in");
   EXPECT_EQ(layout.columns[2].unit, "");
+  EXPECT_EQ(layout.columns[3].unit, "N");
+}
+
+TEST(TextLayout, KeepsWhatTheFileSaysInPlaceOfAKnownUnit) {
+  const TextLayout layout =
+      layout_of("Time [S],Depth (mNM),Load [dyn],Strain (Ext),M[0]\n0,1,2,3,4\n1,2,3,4,5\n");
+  EXPECT_EQ(layout.columns[0].unknown_unit, "S") << "siemens, or seconds in capitals";
+  EXPECT_EQ(layout.columns[0].name, "Time");
+  EXPECT_EQ(layout.columns[1].unknown_unit, "mNM");
+  EXPECT_EQ(layout.columns[2].unknown_unit, "dyn");
+  EXPECT_EQ(layout.columns[2].unit, "");
+  EXPECT_EQ(layout.columns[3].unknown_unit, "") << "a word";
+  EXPECT_EQ(layout.columns[4].unknown_unit, "") << "a number";
+  EXPECT_EQ(layout_of("torque_nm\n0\n1\n").columns[0].unknown_unit, "nm") << "N·m, or nanometres";
+}
+
+TEST(TextLayout, TakesALineOfUnitsBelowNamesThoughOneIsBlankOrUnknown) {
+  const auto units_of = [](const std::string& row) {
+    const TextLayout layout = layout_of("Points,Time,Disp,Load\n" + row + "\n1,0.0,0.1,0.2\n2,0.1,0.2,0.3\n");
+    EXPECT_EQ(layout.header_line, 1U) << row;
+    EXPECT_EQ(layout.units_line, 2U) << row;
+    EXPECT_EQ(layout.columns[3].name, "Load") << row;
+    return layout.columns;
+  };
+  EXPECT_EQ(units_of("\" \",\"Sec\",\"mm\",\"N\"")[1].unit, "Sec");
+  EXPECT_EQ(units_of(",sec,mm,N")[0].unit, "");
+  EXPECT_EQ(units_of("segments,s,mm,N")[0].unknown_unit, "segments");
+  EXPECT_EQ(units_of("(1),(s),(mm),(stone)")[3].unknown_unit, "stone");
+}
+
+TEST(TextLayout, CallsColumnsWithoutNamesByTheirUnits) {
+  const TextLayout layout = layout_of("sec,mm,N\n0.0,0.1,0.2\n0.1,0.2,0.3\n");
+  EXPECT_EQ(layout.header_line, 0U);
+  EXPECT_EQ(layout.columns[0].name, "sec");
+  EXPECT_EQ(layout.columns[2].unit, "N");
+  const TextLayout mixed = layout_of("Way,mN,t\n0.0,0.1,0.2\n0.1,0.2,0.3\n");
+  EXPECT_EQ(mixed.columns[1].unit, "mN");
+  EXPECT_EQ(mixed.columns[0].unit, "");
+  EXPECT_EQ(layout_of("N,t,x,F\n1,0.0,0.1,0.2\n").columns[0].unit, "") << "a count, beside a force";
+  EXPECT_EQ(layout_of("t,h,F\n0.0,0.1,0.2\n").columns[1].unit, "") << "a height";
+}
+
+TEST(TextLayout, FindsUnitsBehindASlashOrInWords) {
+  const TextLayout layout = layout_of("Weg in mm;Kraft / mN;Zeit / s;Kraft / Weg\n0;1;2;3\n1;2;3;4\n");
+  EXPECT_EQ(layout.columns[0].name, "Weg");
+  EXPECT_EQ(layout.columns[0].unit, "mm");
+  EXPECT_EQ(layout.columns[1].unit, "mN");
+  EXPECT_EQ(layout.columns[2].unit, "s");
+  EXPECT_EQ(layout.columns[3].name, "Kraft / Weg");
+}
+
+TEST(TextLayout, TakesNoStatisticForAUnit) {
+  const TextLayout layout =
+      layout_of("pos_mm_min,pos_mm_max,adc_min,time_min,force_mN_\n0,1,2,3,4\n1,2,3,4,5\n");
+  EXPECT_EQ(layout.columns[0].unit, "mm");
+  EXPECT_EQ(layout.columns[1].unit, "mm");
+  EXPECT_EQ(layout.columns[2].unit, "") << "not minutes";
+  EXPECT_EQ(layout.columns[3].unit, "min");
+  EXPECT_EQ(layout.columns[4].unit, "mN") << "as programs make a name of 'force (mN)'";
+}
+
+TEST(TextLayout, ReadsNamesAndUnitsThatCommentsSay) {
+  const TextLayout jpk = layout_of(
+      "# k: 0.05 N/m\n# columns: vDeflection height time\n# fancyNames: \"V\" \"H\"\n"
+      "# units: N m s\n#\n1e-9 2e-6 0.0\n2e-9 3e-6 0.1\n");
+  EXPECT_EQ(jpk.header_line, 2U);
+  EXPECT_EQ(jpk.units_line, 4U);
+  EXPECT_EQ(jpk.columns[1].name, "height");
+  EXPECT_EQ(jpk.columns[1].unit, "m");
+  const TextLayout gauge = layout_of("MAX = 195.5,3.9\nUNIT = gf,mm\n2ND PEAK = ---,---\n0.0,0.1\n0.1,0.2\n");
+  EXPECT_EQ(gauge.header_line, 0U) << "a value of the file is no heading";
+  EXPECT_EQ(gauge.units_line, 2U);
+  EXPECT_EQ(gauge.columns[0].unit, "gf");
+  EXPECT_EQ(gauge.columns[1].unit, "mm");
+}
+
+TEST(TextLayout, BeginsBelowTheNamesOfItsColumns) {
+  const TextLayout layout = layout_of(
+      "Channel\tA\tB\nScale\t1.0\t500.0\nOffset\t0.0\t0.0\n\nTest Data\n\n"
+      "Sample\tA\tB\tStim\n0\t0.1\t0.2\t0\n1\t0.2\t0.3\t0\n2\t0.3\t0.4\t0\n"
+      "3\t0.4\t0.5\t0\n4\t0.5\t0.6\t0\n");
+  EXPECT_EQ(layout.header_line, 7U);
+  EXPECT_EQ(layout.preamble_lines, 7U);
+  EXPECT_EQ(layout.columns.size(), 4U);
+}
+
+TEST(TextLayout, ReadsATableOfWhichAllIsQuoted) {
+  for (const auto* text : {"\"t\",\"x\",\"F\",\"label\"\n\"0.00\",\"0.10\",\"0.2\",\"press\"\n",
+                           "\"t\";\"x\";\"F\";\"label\"\n\"0.00\";\"0.10\";\"0.2\";\"press; hold\"\n"}) {
+    EXPECT_EQ(layout_of(text).columns.size(), 4U) << text;
+    EXPECT_EQ(layout_of(text).columns[1].name, "x") << text;
+  }
+}
+
+TEST(TextLayout, ReadsTwoNumbersBesideADateAndATimeOfDay) {
+  const TextLayout layout = layout_of(
+      "Date;Time;Pos [mm];Fz "
+      "[N]\n02.05.2016;12:11:10,000;0,0000;0,0039\n02.05.2016;12:11:10,010;0,0006;0,0043\n");
+  EXPECT_EQ(layout.point, ',');
+  EXPECT_EQ(layout.preamble_lines, 1U);
   EXPECT_EQ(layout.columns[3].unit, "N");
 }
 
@@ -108,6 +222,10 @@ TEST(TextLayout, RefusesWhatIsNoTable) {
   EXPECT_EQ(refusal(""), "data.txt: the file is empty; expected lines of numbers");
   EXPECT_THAT(refusal("no number\nin here\n"),
               HasSubstr("data.txt: no line of numbers in the first 2 lines"));
+  EXPECT_THAT(refusal("{\"t\": 0.0, \"f\": [0, 0, 0.1, 0, 0, 0]}\n"),
+              HasSubstr("it is JSON, which is not read"));
+  EXPECT_THAT(refusal("[\n{\n\"t\": 0.0,\n\"x\": 0.1\n}\n]\n"), HasSubstr("it is JSON, which is not read"));
+  EXPECT_THAT(refusal("[INFO] t=0.0 pos=(0.1, 0, 0) force=(0.2, 0, 0)\n"), HasSubstr("a log of NAME=VALUE"));
   EXPECT_THAT(refusal(std::string("\x7f"
                                   "ELF\0\0\0",
                                   7)),

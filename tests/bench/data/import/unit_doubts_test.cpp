@@ -45,6 +45,39 @@ TEST(UnitDoubts, NameTheUnitOfTheHeadingAndThatOfTheMap) {  // finding L5
               ElementsAre(HasSubstr("is in N as the file says, and mapped to force_measured in gf")));
 }
 
+TEST(UnitDoubts, NameRawNumbersThatAreTakenForAUnitOneToOne) {
+  EXPECT_THAT(
+      warnings_of_punch("t_ms,encoder [counts],force (N)", "time=1,position=2[deg],force=3"),
+      ElementsAre("column 2 'encoder [counts]' is in counts as the file says, and mapped to position in "
+                  "deg one to one; how many are one deg?"));
+  EXPECT_THAT(warnings_of_punch("t_ms,encoder [counts],force (N)", "time=1,position=2[counts/4 deg],force=3"),
+              IsEmpty());
+}
+
+TEST(UnitDoubts, NameAUnitThatIsNotKnownAndIsTakenForOneOfOurs) {
+  EXPECT_THAT(
+      warnings_of_punch("t_ms,angle (deg),force (dyn)", "time=1,position=2,force=3[N]"),
+      ElementsAre(HasSubstr("is in dyn as the file says, and mapped to force_measured in N one to one")));
+  EXPECT_THAT(warnings_of_punch("t_ms,angle (deg),force (dyn)", "time=1,position=2,force=3[0.00001 N]"),
+              IsEmpty());
+}
+
+TEST(UnitDoubts, AreNoneOfASignOrAFactorThatSomebodyChose) {
+  const std::string header = "t_ms,angle_deg,force_N";
+  EXPECT_THAT(warnings_of_punch(header, "time=1,position=2[-1 deg],force=3[-1 N]"), IsEmpty());
+  EXPECT_THAT(warnings_of_punch(header, "time=1,position=2,force=3[0.5 N]"), IsEmpty());
+  EXPECT_THAT(warnings_of_punch(header, "time=1,position=2,force=3[-1 mN]"),
+              ElementsAre(HasSubstr("which is right?")));
+}
+
+TEST(UnitDoubts, AreNoneOfAMassThatIsTakenForItsWeight) {
+  EXPECT_THAT(warnings_of_punch("t_ms,angle_deg,force (g)", "time=1,position=2,force=3[gf]"), IsEmpty());
+  EXPECT_THAT(warnings_of_punch("t_ms,angle_deg,force (lbs)", "time=1,position=2,force=3[-1 lbf]"),
+              IsEmpty());
+  EXPECT_THAT(warnings_of_punch("t_ms,angle_deg,force (g)", "time=1,position=2,force=3[N]"),
+              ElementsAre(HasSubstr("which is right?")));
+}
+
 TEST(UnitDoubts, NameWhatNoHandDoes) {
   EXPECT_THAT(warnings_of_punch("a,b,c", "time=1[ms],position=2[deg],force=3[kN]"),
               ElementsAre("force_measured reaches 7500 N with its column in kN; is that unit right?"));

@@ -35,7 +35,7 @@ TEST(AxisSeries, IsSeenInTheDirectionOfEngagement) {
 
 TEST(AxisSeries, RefusesPhasesOfRowsThatAreNotThere) {
   schema::Recording recording = closing_scissors();
-  recording.cycles.emplace();
+  recording.cycles = schema::Cycles{.axis = 1};
   recording.cycles->phases = {{.cycle = 1, .phase = schema::Phase::closing, .begin = 1, .end = 4}};
   EXPECT_THROW((void)axis_series(recording, 1, half_open), schema::FormatError);
   recording.cycles->phases[0] = {.cycle = 1, .phase = schema::Phase::closing, .begin = 3, .end = 1};
@@ -56,6 +56,8 @@ TEST(AxisSeries, KnowsTheCycleOfEachRow) {
   recording.cycles = schema::Cycles{.axis = 1, .closing_direction = -1.0, .contact_position = 0.5};
   recording.cycles->phases = {{.cycle = 1, .phase = schema::Phase::closing, .begin = 1, .end = 3}};
   EXPECT_THAT(axis_series(recording, 1, half_open).cycle, ElementsAre(0U, 1U, 1U));
+  recording.cycles->axis = 0;
+  EXPECT_TRUE(axis_series(recording, 1, half_open).cycle.empty()) << "cycles of another axis";
 }
 
 TEST(AxisSeries, RefusesARecordingWithoutForce) {

@@ -89,6 +89,20 @@ TEST(Segment, TakesForClosingTheWayThatCostsMore) {
   EXPECT_EQ(told.closing_direction, 1.0);
 }
 
+// A spring costs as much on the way in as it gives back: noise would decide.
+TEST(Segment, OfASpringTakesForClosingTheWayIntoIt) {
+  for (const double direction : {1.0, -1.0}) {
+    for (const unsigned seed : {1U, 2U, 3U, 4U, 5U, 6U}) {
+      schema::Recording recording = Cutting{.direction = direction}.recording();
+      std::mt19937_64 random(seed);
+      std::normal_distribution<double> noise(0.0, 0.5);
+      for (std::size_t row = 0; row < recording.position.size(); ++row)
+        recording.force_measured[row] = 4.0 * std::abs(recording.position[row]) + noise(random);
+      EXPECT_EQ(find_cycles(recording, {}).closing_direction, direction) << seed;
+    }
+  }
+}
+
 TEST(Segment, CountsStrokesAndNotNoise) {
   const auto cycles = find_cycles(Cutting{.noise = 0.02}.recording(), {});
   EXPECT_EQ(count(cycles, schema::Phase::closing), 4);

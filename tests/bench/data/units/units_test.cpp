@@ -78,6 +78,44 @@ TEST(Units, OfCountsAreWhatOneOfThemIs) {
     EXPECT_THROW((void)parse_unit(bad), std::invalid_argument) << bad;
 }
 
+TEST(Units, AreReadAsInstrumentsSpellThem) {
+  for (const auto* second : {"sec", "Sec", "SECS", "Seconds", "second"})
+    EXPECT_EQ(parse_unit(second), parse_unit("s"));
+  EXPECT_EQ(parse_unit("mins"), parse_unit("min"));
+  EXPECT_EQ(parse_unit("inches"), parse_unit("in"));
+  EXPECT_EQ(parse_unit("Millimeters"), parse_unit("mm"));
+  EXPECT_EQ(parse_unit("Newtons"), parse_unit("N"));
+  EXPECT_EQ(parse_unit("KN"), parse_unit("kN"));
+  EXPECT_EQ(parse_unit("lbs"), parse_unit("lb"));
+  EXPECT_EQ(parse_unit("grams"), parse_unit("g"));
+  EXPECT_EQ(parse_unit("N/inch"), parse_unit("N/in"));
+  for (const auto* ambiguous : {"MN", "S", "MS", "NM"})
+    EXPECT_THROW((void)parse_unit(ambiguous), std::invalid_argument) << ambiguous;
+}
+
+TEST(Units, OfSmallForcesHaveEitherMu) {
+  EXPECT_EQ(parse_unit("\u00b5N"), parse_unit("1e-6 N"));
+  EXPECT_EQ(parse_unit("\u03bcN"), parse_unit("\u00b5N"));
+  EXPECT_EQ(parse_unit("\u03bcm"), parse_unit("um"));
+  EXPECT_EQ(parse_unit("uN"), parse_unit("\u00b5N"));
+  EXPECT_DOUBLE_EQ(parse_unit("nN").factor, 1e-9);
+  EXPECT_DOUBLE_EQ(parse_unit("pN").factor, 1e-12);
+  EXPECT_DOUBLE_EQ(parse_unit("cN").factor, 1e-2);
+  EXPECT_DOUBLE_EQ(parse_unit("daN").factor, 10.0);
+  EXPECT_EQ(parse_unit("nm").si, "m") << "not N·m";
+}
+
+TEST(Units, OfPoundsAreMassesUnlessTheySayForce) {
+  EXPECT_EQ(parse_unit("lb").si, "kg");
+  EXPECT_DOUBLE_EQ(parse_unit("lb").factor * 9.80665, parse_unit("lbf").factor);
+}
+
+TEST(Units, AreFoundWithoutTheFactorBeforeThem) {
+  EXPECT_EQ(without_factor("-1 N"), "N");
+  EXPECT_EQ(without_factor("counts/1000 N"), "N");
+  EXPECT_EQ(without_factor("mm"), "mm");
+}
+
 TEST(Units, RefuseWhatTheyDoNotKnowAndSayWhatTheyDo) {
   const auto message = [](const char* text) -> std::string {
     try {
@@ -88,6 +126,7 @@ TEST(Units, RefuseWhatTheyDoNotKnowAndSayWhatTheyDo) {
     }
   };
   EXPECT_THAT(message("furlong"), testing::AllOf(testing::HasSubstr("'furlong'"), testing::HasSubstr("mm")));
+  EXPECT_EQ(message("? N"), "write for ? in '? N' how many N one of the file's units is, as in 0.001 N");
   EXPECT_THAT(message("N/"), testing::HasSubstr("operator"));
   EXPECT_THAT(message(""), testing::HasSubstr("empty"));
   EXPECT_THAT(message("nan mm"), testing::HasSubstr("finite"));
