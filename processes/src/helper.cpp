@@ -51,17 +51,25 @@ int start(const std::filesystem::path& program, std::span<const int> descriptors
   // Above where they are put, so that none is overwritten before it is duplicated.
   const int above = first_descriptor + static_cast<int>(descriptors.size());
   std::vector<Descriptor> high;
-  for (const int descriptor : descriptors) high.emplace_back(fcntl(descriptor, F_DUPFD_CLOEXEC, above));
+  for (const int descriptor : descriptors) {
+    high.emplace_back(fcntl(descriptor, F_DUPFD_CLOEXEC, above));
+    if (high.back().number() < 0) return errno;
+  }
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
+  // A helper without one of its descriptors would take what it does for done: it is not started.
+  int not_added = 0;
+  const auto add = [&](int result) {
+    if (not_added == 0) not_added = result;
+  };
   for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
-    posix_spawn_file_actions_addopen(&actions, standard, "/dev/null", O_RDWR, 0);
+    add(posix_spawn_file_actions_addopen(&actions, standard, "/dev/null", O_RDWR, 0));
   }
   int place = first_descriptor;
   for (const Descriptor& descriptor : high) {
-    posix_spawn_file_actions_adddup2(&actions, descriptor.number(), place++);
+    add(posix_spawn_file_actions_adddup2(&actions, descriptor.number(), place++));
   }
-  posix_spawn_file_actions_addclosefrom_np(&actions, place);
+  add(posix_spawn_file_actions_addclosefrom_np(&actions, place));
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   sigset_t every;
@@ -73,7 +81,9 @@ int start(const std::filesystem::path& program, std::span<const int> descriptors
   std::vector<char*> command;
   for (std::string& word : words) command.push_back(word.data());
   command.push_back(nullptr);
-  const int error = posix_spawn(&process, program.c_str(), &actions, &attributes, command.data(), environ);
+  const int error =
+      not_added != 0 ? not_added
+                     : posix_spawn(&process, program.c_str(), &actions, &attributes, command.data(), environ);
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   return error;

@@ -19,22 +19,29 @@ class SpawnActions {
   explicit SpawnActions(const Program& program) {
     posix_spawn_file_actions_init(&actions_);
     if (program.input < 0) {
-      posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+      add(posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0));
     } else {
-      posix_spawn_file_actions_adddup2(&actions_, program.input, STDIN_FILENO);
+      add(posix_spawn_file_actions_adddup2(&actions_, program.input, STDIN_FILENO));
     }
-    if (program.output >= 0) posix_spawn_file_actions_adddup2(&actions_, program.output, STDOUT_FILENO);
-    if (program.errors >= 0) posix_spawn_file_actions_adddup2(&actions_, program.errors, STDERR_FILENO);
-    if (!program.folder.empty()) posix_spawn_file_actions_addchdir_np(&actions_, program.folder.c_str());
-    posix_spawn_file_actions_addclosefrom_np(&actions_, first_descriptor);
+    if (program.output >= 0) add(posix_spawn_file_actions_adddup2(&actions_, program.output, STDOUT_FILENO));
+    if (program.errors >= 0) add(posix_spawn_file_actions_adddup2(&actions_, program.errors, STDERR_FILENO));
+    if (!program.folder.empty()) add(posix_spawn_file_actions_addchdir_np(&actions_, program.folder.c_str()));
+    add(posix_spawn_file_actions_addclosefrom_np(&actions_, first_descriptor));
   }
   SpawnActions(const SpawnActions&) = delete;
   SpawnActions& operator=(const SpawnActions&) = delete;
   ~SpawnActions() { posix_spawn_file_actions_destroy(&actions_); }
   [[nodiscard]] const posix_spawn_file_actions_t* get() const { return &actions_; }
+  /// Why one of them could not be added; 0: all are there.
+  [[nodiscard]] int error() const { return error_; }
 
  private:
+  void add(int result) {
+    if (error_ == 0) error_ = result;
+  }
+
   posix_spawn_file_actions_t actions_{};
+  int error_ = 0;
 };
 
 class SpawnAttributes {
@@ -66,6 +73,7 @@ class SpawnAttributes {
 
 int start(const Program& program, pid_t& process) {
   const SpawnActions actions(program);
+  if (actions.error() != 0) return actions.error();
   const SpawnAttributes attributes(program);
   std::vector<std::string> words = program.words;
   std::vector<char*> arguments;

@@ -294,51 +294,66 @@ bool UsbDevice::clear_halt(std::uint8_t endpoint) noexcept {
   return libusb_clear_halt(handle_, endpoint) == LIBUSB_SUCCESS;
 }
 
+namespace {
+
+Transfer::End end_of(libusb_transfer_status status) noexcept {
+  switch (status) {
+    case LIBUSB_TRANSFER_COMPLETED:
+      return Transfer::End::completed;
+    case LIBUSB_TRANSFER_STALL:
+      return Transfer::End::stalled;
+    case LIBUSB_TRANSFER_CANCELLED:
+      return Transfer::End::cancelled;
+    case LIBUSB_TRANSFER_NO_DEVICE:
+      return Transfer::End::gone;
+    default:
+      return Transfer::End::failed;
+  }
+}
+
+}  // namespace
+
+Transfer::OfUsb::OfUsb(std::size_t size, Handler told)
+    : buffer(size), handler(std::move(told)), transfer(libusb_alloc_transfer(0)) {
+  if (transfer == nullptr) throw std::bad_alloc();
+}
+
+Transfer::OfUsb::~OfUsb() { libusb_free_transfer(transfer); }
+
+void Transfer::has_ended(libusb_transfer* transfer) noexcept {
+  auto* const it = static_cast<OfUsb*>(transfer->user_data);
+  it->pending = false;
+  if (it->is_abandoned) {
+    delete it;
+    return;
+  }
+  it->handler(end_of(transfer->status),
+              {transfer->buffer, static_cast<std::size_t>(transfer->actual_length)});
+}
+
 Transfer::Transfer(UsbDevice& device, std::uint8_t endpoint, std::size_t size, Handler handler)
-    : device_(device), buffer_(size), handler_(std::move(handler)), transfer_(libusb_alloc_transfer(0)) {
-  if (transfer_ == nullptr) throw std::bad_alloc();
-  constexpr auto ended = [](libusb_transfer* transfer) {
-    auto& self = *static_cast<Transfer*>(transfer->user_data);
-    self.pending_ = false;
-    End end = End::failed;
-    switch (transfer->status) {
-      case LIBUSB_TRANSFER_COMPLETED:
-        end = End::completed;
-        break;
-      case LIBUSB_TRANSFER_STALL:
-        end = End::stalled;
-        break;
-      case LIBUSB_TRANSFER_CANCELLED:
-        end = End::cancelled;
-        break;
-      case LIBUSB_TRANSFER_NO_DEVICE:
-        end = End::gone;
-        break;
-      default:
-        break;
-    }
-    self.handler_(end, {transfer->buffer, static_cast<std::size_t>(transfer->actual_length)});
-  };
-  libusb_fill_bulk_transfer(transfer_, device.handle(), endpoint, buffer_.data(), static_cast<int>(size),
-                            ended, this, 0);
+    : device_(device), of_usb_(std::make_unique<OfUsb>(size, std::move(handler))) {
+  libusb_fill_bulk_transfer(of_usb_->transfer, device.handle(), endpoint, of_usb_->buffer.data(),
+                            static_cast<int>(size), has_ended, of_usb_.get(), 0);
 }
 
 Transfer::~Transfer() {
   cancel();
   // A device that is gone ends its transfers too; a second is far more than any takes.
-  for (int waited = 0; pending_ && waited < 100; ++waited) device_.handle_events(10'000'000);
-  // Freeing one that never ended would let libusb write into freed memory.
-  if (!pending_) libusb_free_transfer(transfer_);
+  for (int waited = 0; pending() && waited < 100; ++waited) device_.handle_events(10'000'000);
+  if (!pending()) return;
+  of_usb_->is_abandoned = true;
+  (void)of_usb_.release();  // whoever ends it frees it
 }
 
 bool Transfer::submit(std::size_t size) noexcept {
-  transfer_->length = static_cast<int>(size);
-  pending_ = libusb_submit_transfer(transfer_) == LIBUSB_SUCCESS;
-  return pending_;
+  of_usb_->transfer->length = static_cast<int>(size);
+  of_usb_->pending = libusb_submit_transfer(of_usb_->transfer) == LIBUSB_SUCCESS;
+  return of_usb_->pending;
 }
 
 void Transfer::cancel() noexcept {
-  if (pending_) libusb_cancel_transfer(transfer_);
+  if (pending()) libusb_cancel_transfer(of_usb_->transfer);
 }
 
 }  // namespace kerf::drivers::usb

@@ -123,23 +123,38 @@ class Transfer {
   Transfer(UsbDevice& device, std::uint8_t endpoint, std::size_t size, Handler handler);
   Transfer(const Transfer&) = delete;
   Transfer& operator=(const Transfer&) = delete;
-  /// Cancels it and handles events until it has ended.
+  /// Cancels it and handles events until it has ended. Of one that does not end in a second all that libusb
+  /// may still write into stays, and nobody hears of it.
   ~Transfer();
 
   /// Room for what is to be sent.
-  [[nodiscard]] std::span<std::uint8_t> buffer() noexcept { return {buffer_.data(), buffer_.size()}; }
+  [[nodiscard]] std::span<std::uint8_t> buffer() noexcept {
+    return {of_usb_->buffer.data(), of_usb_->buffer.size()};
+  }
   /// Submits it with so many bytes; false if the device is gone. Only while it is not pending.
   bool submit(std::size_t size) noexcept;
-  bool submit() noexcept { return submit(buffer_.size()); }
+  bool submit() noexcept { return submit(of_usb_->buffer.size()); }
   void cancel() noexcept;
-  [[nodiscard]] bool pending() const noexcept { return pending_; }
+  [[nodiscard]] bool pending() const noexcept { return of_usb_->pending; }
 
  private:
+  /// What libusb holds on to while the transfer is pending.
+  struct OfUsb {
+    std::vector<std::uint8_t> buffer;
+    Handler handler;
+    libusb_transfer* transfer = nullptr;
+    bool pending = false;
+    bool is_abandoned = false;
+
+    OfUsb(std::size_t size, Handler told);
+    OfUsb(const OfUsb&) = delete;
+    OfUsb& operator=(const OfUsb&) = delete;
+    ~OfUsb();
+  };
+  static void has_ended(libusb_transfer* transfer) noexcept;
+
   UsbDevice& device_;
-  std::vector<std::uint8_t> buffer_;
-  Handler handler_;
-  libusb_transfer* transfer_;
-  bool pending_ = false;
+  std::unique_ptr<OfUsb> of_usb_;
 };
 
 }  // namespace kerf::drivers::usb
