@@ -15,6 +15,7 @@
 #include "files/named_file.h"
 #include "files/whole_file.h"
 #include "recordings/axis_values.h"
+#include "segment/result_state.h"
 
 namespace kerf::bench {
 namespace {
@@ -25,20 +26,21 @@ using Pace = Routes::Pace;
 constexpr double farthest_time_s = 1e12;
 constexpr std::uintmax_t largest_fit = std::uintmax_t{64} << 20U;
 
-/// Why what a page has of the cycles is not what is there, for whoever has to decide.
-std::string why_changed(const schema::Recording& about, const std::string& uuid) {
+/// That what a page has of the cycles is not what is there, for whoever has to decide: 410 where it is of
+/// another recording, whose cycles are none of these, else 409.
+RequestError has_changed(const schema::Recording& about, const std::string& uuid) {
   if (!uuid.empty() && uuid != about.header.uuid)
-    return "Another recording has taken the place of this one since you began. Nothing is saved; what you "
-           "changed "
-           "stays in this tab.";
+    return {410,
+            "Another recording has taken the place of this one since you began. Nothing is saved; what you "
+            "changed stays in this tab."};
   const std::vector<ToldEdit> edits = edits_of(about);
   const std::string who = edits.empty() ? "They were found anew or prepared by a program"
                                         : fmt::format("{} saved at {}: {}", edits.back().author,
                                                       edits.back().time, edits.back().what);
-  return fmt::format(
-      "The cycles have changed since you began. {}. Nothing is saved; load them, and what you "
-      "changed is put on top.",
-      who);
+  return {409,
+          fmt::format("The cycles have changed since you began. {}. Nothing is saved; load them, and what "
+                      "you changed is put on top.",
+                      who)};
 }
 
 class CycleDesk {
@@ -86,7 +88,7 @@ class CycleDesk {
       const auto recording = views_.opened(path);
       const schema::RecordingFile& file = recording->file();
       if (cycles_version(file) != text_in(given, "version"))
-        throw RequestError(409, why_changed(file.about(), text_or(given, "uuid", "")));
+        throw has_changed(file.about(), text_or(given, "uuid", ""));
       if (const std::string locked = why_not_mended(file, path); !locked.empty())
         throw RequestError(423, locked);
       const CycleQuestion question = cycle_question(given, file.about());
@@ -99,18 +101,17 @@ class CycleDesk {
     const auto recording = views_.opened(path_of(id));
     const schema::Recording& about = recording->file().about();
     const WorkspaceEntry entry = workspace_.find(fit_id, FileKind::fit);
-    const auto fit = nlohmann::json::parse(read_named_file(entry.path, largest_fit), nullptr, false);
+    const auto fit = Json::parse(read_named_file(entry.path, largest_fit), nullptr, false);
     Json unknown{{"earlier", nullptr}, {"why", ""}};
     if (!fit.is_object() || !fit.contains("recordings") || !fit["recordings"].is_array()) return unknown;
-    for (const nlohmann::json& one : fit["recordings"]) {
+    for (const Json& one : fit["recordings"]) {
       if (!one.is_object() || one.value("uuid", "") != about.header.uuid) continue;
-      const auto known = one.find("cycles_sha256");
-      if (known == one.end()) return unknown;  // of an earlier version
-      if (known->is_null() && about.cycles && one.value("axis", "") == about.axes[about.cycles->axis].name)
+      const ResultState state = state_of(one, about);
+      if (state == ResultState::unknown) return unknown;
+      if (state == ResultState::before_cycles)
         return {{"earlier", true},
                 {"why", "It is of a time before cycles were saved: of all rows. Fit again."}};
-      if (!known->is_string()) return unknown;
-      if (known->get<std::string>() == cycles_sha256_of(about)) return {{"earlier", false}, {"why", ""}};
+      if (state == ResultState::current) return {{"earlier", false}, {"why", ""}};
       const std::vector<ToldEdit> edits = edits_of(about);
       return {{"earlier", true},
               {"why", edits.empty() ? "It is of earlier cycles: they were found anew since. Fit again."

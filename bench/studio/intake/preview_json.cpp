@@ -30,6 +30,7 @@ Json columns_as_json(const TextLayout& layout) {
                     {"heading", column.heading},
                     {"name", column.name},
                     {"unit", column.unit},
+                    {"unknown_unit", column.unknown_unit},
                     {"stamps", column.stamps.has_value()}});
   return list;
 }

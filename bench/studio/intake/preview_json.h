@@ -9,7 +9,7 @@ namespace kerf::bench {
 
 /// What a page shows of a file before it is imported:
 ///
-///     {"columns": [{"number", "heading", "name", "unit", "stamps"}],
+///     {"columns": [{"number", "heading", "name", "unit", "unknown_unit", "stamps"}],
 ///      "lines": [{"number", "kind", "fields"}], "irregular": [the same],
 ///      "layout": {"separator", "decimal", "header_line", "units_line", "preamble_lines"},
 ///      "suggested": {"map", "has_time"}, "mapped": [{"channel", "column", "unit", "unit_from_file", "si"}],

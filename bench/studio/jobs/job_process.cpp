@@ -5,6 +5,7 @@
 #include <charconv>
 #include <chrono>
 #include <csignal>
+#include <cstddef>
 #include <cstring>
 #include <stdexcept>
 #include <system_error>
@@ -12,6 +13,7 @@
 #include <fcntl.h>
 #include <fmt/core.h>
 #include <poll.h>
+#include <sched.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -40,7 +42,7 @@ PipeEnds make_pipe() {
   return made;
 }
 
-/// What the new process needs, made ready before there is one: between fork() and exec() no memory is taken.
+/// What the new process needs, made ready before there is one: until it is the program no memory is taken.
 struct ProgramCall {
   explicit ProgramCall(const JobProcess& process) : program(process.program), folder(process.folder) {
     texts.push_back(program);
@@ -76,7 +78,9 @@ struct ProgramStreams {
 
  private:
   static Descriptor above(const Descriptor& one) {
-    return Descriptor(fcntl(one.number(), F_DUPFD_CLOEXEC, processes::first_descriptor + 1));
+    Descriptor copy(fcntl(one.number(), F_DUPFD_CLOEXEC, processes::first_descriptor + 1));
+    if (copy.number() < 0) throw std::system_error(errno, std::generic_category(), "a stream of a program");
+    return copy;
   }
   static Descriptor opened(const char* file, int flags) {
     const Descriptor one(open(file, flags | O_CLOEXEC, 0644));
@@ -93,15 +97,35 @@ bool put(int descriptor, int number) {
   return descriptor == number ? fcntl(number, F_SETFD, 0) == 0 : dup2(descriptor, number) >= 0;
 }
 
-/// In the new process: takes the place of what was copied. Returns only if it cannot; errno says why.
+/// What the new process is to become, and why it could not: it runs in the studio's memory until it has.
+struct Becoming {
+  const ProgramCall& command;
+  const ProgramStreams& streams;
+  pid_t studio;
+  int error = 0;
+};
+
+/// Handlers are the studio's code: none may run in its memory for a signal of the new process.
+void forget_handlers() {
+  for (int signal = 1; signal < NSIG; ++signal) {
+    struct sigaction action {};
+    if (sigaction(signal, nullptr, &action) != 0) continue;
+    const bool is_left_alone = action.sa_handler == SIG_DFL || action.sa_handler == SIG_IGN;
+    if (is_left_alone && signal != SIGPIPE) continue;
+    action.sa_handler = SIG_DFL;
+    (void)sigaction(signal, &action, nullptr);
+  }
+}
+
+/// In the new process. Returns only if it cannot become the program; errno says why.
 void become(const ProgramCall& command, const ProgramStreams& streams, pid_t studio) {
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != studio) _exit(127);  // it has ended meanwhile
   setpgid(0, 0);
+  forget_handlers();
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
-  std::signal(SIGPIPE, SIG_DFL);
   if (chdir(command.folder.c_str()) != 0) return;
   if (!put(streams.input.number(), STDIN_FILENO) || !put(streams.output.number(), STDOUT_FILENO)) return;
   if (!put(streams.errors.number(), STDERR_FILENO)) return;
@@ -111,35 +135,40 @@ void become(const ProgramCall& command, const ProgramStreams& streams, pid_t stu
   execve(command.program.c_str(), command.words.data(), command.variables.data());
 }
 
+int become_or_say_why(void* given) {
+  Becoming& its = *static_cast<Becoming*>(given);
+  become(its.command, its.streams, its.studio);
+  its.error = errno;
+  return 127;
+}
+
+/// The studio's memory is not copied, as fork() does page by page where somebody writes: a loop that runs in
+/// it would wait a tenth of a second for that. This thread alone waits, until the new process is the program.
 pid_t start_process(const JobProcess& process, const PipeEnds& log, const PipeEnds& progress) {
   const ProgramCall command(process);
   const ProgramStreams streams(process, log, progress);
-  PipeEnds failed =
-      make_pipe();  // carries why it could not become the program; closed by the kernel if it could
-  const pid_t studio = getpid();
-  const pid_t child = fork();
-  if (child < 0) throw std::system_error(errno, std::generic_category(), process.program.string());
-  if (child == 0) {
-    const Descriptor high(fcntl(failed.to.number(), F_DUPFD_CLOEXEC, processes::first_descriptor + 1));
-    become(command, streams, studio);
-    const int error = errno;
-    (void)!write(high.number(), &error, sizeof error);
-    _exit(127);
-  }
-  failed.to.reset();
-  (void)fcntl(failed.from.number(), F_SETFL, 0);
-  int error = 0;
-  if (read(failed.from.number(), &error, sizeof error) == sizeof error) {
-    (void)processes::wait_for(child);
-    throw std::system_error(error, std::generic_category(), process.program.string());
-  }
-  return child;
+  Becoming becoming{.command = command, .streams = streams, .studio = getpid()};
+  constexpr std::size_t stack_bytes = std::size_t{64} << 10U;
+  std::vector<std::max_align_t> stack(stack_bytes / sizeof(std::max_align_t));
+  sigset_t all;
+  sigset_t before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  const pid_t child =
+      clone(become_or_say_why, stack.data() + stack.size(), CLONE_VM | CLONE_VFORK | SIGCHLD, &becoming);
+  const int error = child < 0 ? errno : becoming.error;
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  if (error == 0) return child;
+  if (child >= 0) (void)processes::wait_for(child);
+  throw std::system_error(error, std::generic_category(), process.program.string());
 }
 
-/// What is there to be read now; false at the end.
+/// What is there to be read now, no more than keeps whoever wants to stop it waiting; false at the end.
 bool take_text(const Descriptor& from, std::string& text) {
+  constexpr std::size_t most_at_once = std::size_t{1} << 20U;
   std::array<char, 4096> buffer{};
-  for (;;) {
+  for (std::size_t before = text.size();;) {
+    if (text.size() - before > most_at_once) return true;
     const ssize_t got = read(from.number(), buffer.data(), buffer.size());
     if (got > 0) text.append(buffer.data(), static_cast<std::size_t>(got));
     if (got == 0) return false;
@@ -160,6 +189,27 @@ void take_steps(std::string& text, const std::function<void(std::size_t, std::si
     text.erase(0, end + 1);
   }
 }
+
+/// A process that is not left behind, whatever is thrown meanwhile.
+class Child {
+ public:
+  explicit Child(pid_t process) : process_(process) {}
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+  ~Child() {
+    if (has_ended_) return;
+    kill(-process_, SIGKILL);
+    (void)processes::wait_for(process_);
+  }
+  /// Looks whether it has, and how.
+  bool has_ended() { return has_ended_ = waitpid(process_, &status_, WNOHANG) == process_; }
+  [[nodiscard]] int status() const { return status_; }
+
+ private:
+  pid_t process_;
+  int status_ = 0;
+  bool has_ended_ = false;
+};
 
 /// Asks to stop and, in the end, makes it.
 class Stopping {
@@ -193,26 +243,26 @@ int run_process(const JobProcess& process, JobProgress& progress) {
   const std::function<void(std::size_t, std::size_t)> told = process.told ? process.told : keep;
   PipeEnds output = make_pipe();
   PipeEnds steps = make_pipe();
-  const pid_t child = start_process(process, output, steps);
+  const pid_t number = start_process(process, output, steps);
+  Child child(number);
   output.to.reset();
   steps.to.reset();
-  Stopping stopping(child);
+  Stopping stopping(number);
   std::string steps_text;
-  int status = 0;
   for (bool has_ended = false; !has_ended;) {
     std::array<pollfd, 2> wanted{{{.fd = output.from.number(), .events = POLLIN, .revents = 0},
                                   {.fd = steps.from.number(), .events = POLLIN, .revents = 0}}};
     (void)poll(wanted.data(), wanted.size(), process_look_ms);
     stopping.look(progress.stop);
-    has_ended = waitpid(child, &status, WNOHANG) == child;  // before the last look at what it has said
+    has_ended = child.has_ended();  // before the last look at what it has said
     std::string said;
     if (output.from.number() >= 0 && !take_text(output.from, said)) output.from.reset();
     if (steps.from.number() >= 0 && !take_text(steps.from, steps_text)) steps.from.reset();
     if (!said.empty()) progress.log(said);
     take_steps(steps_text, told);
   }
-  if (WIFEXITED(status)) return WEXITSTATUS(status);
-  const int signal = WTERMSIG(status);
+  if (WIFEXITED(child.status())) return WEXITSTATUS(child.status());
+  const int signal = WTERMSIG(child.status());
   throw std::runtime_error(fmt::format(
       "its process was ended from outside, by signal {} ({}): by somebody, or by the system where "
       "memory ran out; what it had written so far is removed by the next run",

@@ -63,19 +63,22 @@ ordered_json factors_of(const StudyPlan& plan) {
           {"tissues", tissues},       {"speeds", speeds}, {"specimens", specimens}};
 }
 
-/// How many recordings could not be used, and how many of the others are doubted.
-void count_faults(const std::optional<ordered_json>& results, ordered_json& entry) {
-  entry["failed"] = entry["doubted"] = nullptr;
+/// How many recordings count, how many could not be used, and how many of the others are doubted.
+void count_recordings(const std::optional<ordered_json>& results, ordered_json& entry) {
+  entry["counted"] = entry["failed"] = entry["doubted"] = nullptr;
   if (!results) return;
+  std::size_t counted = 0;
   std::size_t failed = 0;
   std::size_t doubted = 0;
   for (const ordered_json& one : results->at("recordings")) {
+    counted += one.at("counts").get<bool>() ? 1 : 0;
     if (!one.at("failure").is_null()) {
       ++failed;
     } else if (!one.at("doubts").empty()) {
       ++doubted;
     }
   }
+  entry["counted"] = counted;
   entry["failed"] = failed;
   entry["doubted"] = doubted;
 }
@@ -89,7 +92,7 @@ ordered_json entry_of(const Workspace& workspace, const WorkspaceEntry& study, c
                 {"run_at", state.run_at},
                 {"software", state.software}});
   entry.update(factors_of(plan));
-  count_faults(results, entry);
+  count_recordings(results, entry);
   return entry;
 }
 

@@ -24,7 +24,8 @@ namespace {
 using schema::Column;
 
 constexpr std::uint64_t max_rows_segmented = 5'000'000;
-constexpr std::size_t max_points = 600;
+constexpr std::size_t fewest_points = 600;
+constexpr std::size_t points_of_all = 20'000;
 constexpr std::size_t max_whole_points = 6000;
 
 bool is_measured(const schema::RecordingFile& file) { return file.width(Column::force_measured) > 0; }
@@ -78,7 +79,7 @@ ForceLoop loop_of(const schema::RecordingFile& file, std::size_t axis, const Axi
   const BlockedValues force = axis_values(file, force_column(file), axis);
   const std::array<ValueOfRow, 2> columns{[&](std::size_t at) { return position[rows.begin + at]; },
                                           [&](std::size_t at) { return force[rows.begin + at]; }};
-  ForceLoop loop{.cycle = rows.cycle, .position = {}, .force = {}};
+  ForceLoop loop{.cycle = rows.cycle, .rows = rows.end - rows.begin, .position = {}, .force = {}};
   for (const std::size_t at : decimated_rows(rows.end - rows.begin, columns, most)) {
     loop.position.push_back(columns[0](at));
     loop.force.push_back(resisting(columns[1](at), is_measured(file), contact));
@@ -126,9 +127,11 @@ std::vector<ForceLoop> force_loops(const schema::RecordingFile& file, std::size_
                                    const AxisCycles& cycles, std::size_t first, std::size_t count) {
   std::vector<ForceLoop> loops;
   if (first == 0 || first > cycles.cycles.size()) return loops;
-  const auto shown = std::span(cycles.cycles).subspan(first - 1);
-  for (const AxisCycles::Rows& rows : shown.first(std::min(count, shown.size())))
-    loops.push_back(loop_of(file, axis, rows, cycles.contact, max_points));
+  const auto from_first = std::span(cycles.cycles).subspan(first - 1);
+  const auto shown = from_first.first(std::min(count, from_first.size()));
+  if (shown.empty()) return loops;
+  const std::size_t most = std::max(fewest_points, points_of_all / shown.size());
+  for (const AxisCycles::Rows& rows : shown) loops.push_back(loop_of(file, axis, rows, cycles.contact, most));
   return loops;
 }
 

@@ -35,12 +35,14 @@ struct AxisCycles {
 /// Force against position along one cycle.
 struct ForceLoop {
   std::uint32_t cycle = 0;
+  std::uint64_t rows = 0;  ///< of which these are some
   std::vector<double> position;
   std::vector<double> force;  ///< resisting: measured where there is a sensor, else commanded and turned
 };
 
 /// Loops to be drawn: cycles `first` (from 1) to `first + count - 1` in their order, of at most 600 points
-/// each. Of every stretch the first and the last row are kept and those of extreme position or force.
+/// each, or 20,000 in all where that is more. Of every stretch the first and the last row are kept and those
+/// of extreme position or force.
 [[nodiscard]] std::vector<ForceLoop> force_loops(const schema::RecordingFile& file, std::size_t axis,
                                                  const AxisCycles& cycles, std::size_t first,
                                                  std::size_t count);

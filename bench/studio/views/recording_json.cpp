@@ -158,7 +158,7 @@ std::string loops_json(RecordingView& recording, std::size_t axis, std::size_t f
   text.pop_back();  // the closing brace
   text += ",\"loops\":[";
   for (const ForceLoop& loop : force_loops(recording.file(), axis, cycles, first, count)) {
-    text += fmt::format("{}{{\"cycle\":{}", text.back() == '[' ? "" : ",", loop.cycle);
+    text += fmt::format("{}{{\"cycle\":{},\"rows\":{}", text.back() == '[' ? "" : ",", loop.cycle, loop.rows);
     append_member(text, "position", loop.position);
     append_member(text, "force", loop.force);
     text += '}';

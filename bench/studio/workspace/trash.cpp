@@ -36,7 +36,8 @@ std::string Trash::take(const WorkspaceEntry& entry) {
                                      {"time", iso_8601(std::chrono::system_clock::now())}};
   try {
     // What it is stands there first: a file that nobody knows the name of is as good as lost.
-    write_whole_file(place / trashed_about, about.dump() + "\n");
+    write_whole_file(place / trashed_about,
+                     about.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
     fs::rename(entry.path, place / trashed_content);
   } catch (...) {
     std::error_code ignored;

@@ -50,14 +50,16 @@ class GapFinder {
   }
 
  private:
+  /// Those of neighbouring rows are drawn as one stretch, and counted each, as figures_of() does.
   void add_gap(double from_s, double to_s) {
-    const bool has_room = in_all_ <= RowIndex::max_gaps;
-    if (was_gap_) {
-      if (has_room) ends_.back() = to_s;
+    ++in_all_;
+    const bool has_room = ends_.size() < 2 * RowIndex::max_gaps;
+    if (was_gap_ && is_last_kept_) {
+      ends_.back() = to_s;
       return;
     }
-    ++in_all_;
-    if (in_all_ > RowIndex::max_gaps) return;
+    is_last_kept_ = has_room;
+    if (!has_room) return;
     ends_.push_back(from_s);
     ends_.push_back(to_s);
   }
@@ -68,6 +70,7 @@ class GapFinder {
   double last_s_ = 0.0;
   bool is_first_ = true;
   bool was_gap_ = false;
+  bool is_last_kept_ = false;
 };
 
 }  // namespace

@@ -36,8 +36,9 @@ class RowIndex {
   [[nodiscard]] double time_of_bucket(std::uint64_t row) const;
 
   /// From the row before to the row after: where the tick jumps, or a flag tells of missed deadlines or lost
-  /// rows. Those that touch are one. The first of them.
+  /// rows. Those that touch are one stretch. The first of them.
   [[nodiscard]] std::span<const std::pair<double, double>> gaps() const noexcept { return gaps_; }
+  /// Each by itself, as figures_of() counts them.
   [[nodiscard]] std::uint64_t gaps_in_all() const noexcept { return gaps_in_all_; }
 
  private:

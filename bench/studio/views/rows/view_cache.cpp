@@ -18,7 +18,7 @@
 namespace kerf::bench {
 namespace {
 
-constexpr std::uint64_t magic = 0x315259504652454bU;  // "KERFPYR1"; another number for another layout
+constexpr std::uint64_t magic = 0x325259504652454bU;  // "KERFPYR2"; another number for another layout
 
 /// The begin of a file; the bytes of the part follow.
 struct Head {

@@ -188,7 +188,7 @@ TEST_F(CycleRoutes, SayWhatHasHappenedToTheRecordingUnderneath) {
   const json view = stored();
   schema::write_recording(file(), scissors());  // another one of the same name
   const auto replaced = save(view, {{"phases", moved(view, 3, 25)}});
-  EXPECT_EQ(replaced.status, 409);
+  EXPECT_EQ(replaced.status, 410);
   EXPECT_THAT(replaced.body, HasSubstr("Another recording has taken the place"));
   fs::remove(file());
   const auto removed = save(view, {{"phases", moved(view, 3, 25)}});

@@ -3,11 +3,15 @@
 #include <chrono>
 #include <csignal>
 #include <cstddef>
+#include <cstdint>
+#include <stdexcept>
 #include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -107,6 +111,30 @@ TEST_F(JobProcesses, ThatCannotBeStartedSayWhy) {
     EXPECT_EQ(error.code().value(), ENOENT);
     EXPECT_THAT(error.what(), HasSubstr("nothing"));
   }
+}
+
+TEST_F(JobProcesses, AreNotLeftBehindWhereWhoeverIsToldThrows) {
+  JobProcess tells = shell("echo $$ > pid; printf '1 2\n' >&3; exec sleep 60");
+  tells.told = [](std::size_t, std::size_t) { throw std::runtime_error("no room"); };
+  EXPECT_THROW((void)run_process(tells, progress_), std::runtime_error);
+  EXPECT_EQ(kill(std::stoi(test::read_text(folder_ / "pid")), 0), -1) << "it is still there";
+}
+
+// A fork of the studio would copy each page that its loop writes.
+TEST_F(JobProcesses, CopyNoneOfTheStudiosMemory) {
+  std::vector<char> pages(std::size_t{64} << 20U, 1);
+  void* const whole_pages = pages.data() + (4096 - reinterpret_cast<std::uintptr_t>(pages.data()) % 4096);
+  ASSERT_EQ(madvise(whole_pages, pages.size() - 4096, MADV_NOHUGEPAGE), 0);
+  const auto faults = [] {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_minflt;
+  };
+  (void)run_process(shell("true"), progress_);
+  const long before = faults();
+  (void)run_process(shell("true"), progress_);
+  for (std::size_t at = 0; at < pages.size(); at += 4096) ++pages[at];
+  EXPECT_LT(faults() - before, 4096) << "of 16384 pages";
 }
 
 TEST_F(JobProcesses, EndWithTheStudioWhateverEndsIt) {

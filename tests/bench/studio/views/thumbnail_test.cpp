@@ -46,7 +46,7 @@ class Thumbnail : public testing::Test {
   Thumbnails thumbnails_;
 };
 
-TEST_F(Thumbnail, HasTheExtremesOfSomeRowsOfEachColumn) {
+TEST_F(Thumbnail, HasTheExtremesOfEachColumn) {
   const std::size_t rows = 100 * Thumbnails::columns;
   const json small = of(ramp(rows));
   EXPECT_EQ(small["signal"], "force measured");
@@ -57,6 +57,15 @@ TEST_F(Thumbnail, HasTheExtremesOfSomeRowsOfEachColumn) {
   EXPECT_EQ(high.back(), 100);
   EXPECT_TRUE(std::ranges::is_sorted(low));
   for (std::size_t k = 0; k < low.size(); ++k) EXPECT_GE(high[k], low[k]) << k;
+}
+
+TEST_F(Thumbnail, MissesNoPeakOfARecordingOfAMinute) {
+  schema::Recording recording = ramp(60'000);
+  for (double& force : recording.force_measured) force = 0.0;
+  recording.force_measured[41'234] = 5.0;
+  const auto high = of(recording)["high"].get<std::vector<int>>();
+  EXPECT_EQ(std::ranges::max(high), 100);
+  EXPECT_EQ(std::ranges::count(high, 100), 1);
 }
 
 TEST_F(Thumbnail, HasAColumnARowOfAShortRecordingAndNoneOfAnEmptyOne) {

@@ -23,6 +23,7 @@ export interface PreviewColumn {
   heading: string;
   name: string; // the heading without its unit
   unit: string; // as the file says it
+  unknown_unit: string; // what it says in place of one that is known: "counts", "dyn"
   stamps: boolean; // moments, not numbers
 }
 

@@ -61,7 +61,7 @@ export interface Loops {
   averaged: number; // of them in the averages: those that are not left out
   segmented_here: boolean;
   reason?: string; // why there are no cycles
-  loops: { cycle: number; position: number[]; force: (number | null)[] }[];
+  loops: { cycle: number; rows: number; position: number[]; force: (number | null)[] }[];
   average: { position: number[]; closing: (number | null)[]; opening: (number | null)[] };
   whole?: { position: number[]; force: (number | null)[] }; // where there are no cycles: all rows
 }

@@ -89,7 +89,8 @@ export interface ChartFile {
   reference: string;
   rate_hz: number;
   jnd_n: number | null;
-  compared_in: "N" | "JND";
+  force_unit?: string; // of errors and JND; missing in files of earlier versions
+  compared_in: string; // "JND" where several axes are judged
   points: ChartPoint[];
   notes: string[];
   figure: Figure;

@@ -14,6 +14,7 @@ export interface StudyEntry {
   tissues: string[];
   speeds: string[];
   specimens: string[];
+  counted: number | null; // recordings in what is said of their tissue and speed
   failed: number | null;
   doubted: number | null;
 }

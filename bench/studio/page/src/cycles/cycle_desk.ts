@@ -12,6 +12,7 @@ const after_ms = 220; // of silence the server is asked what a change comes to
 export interface Trouble {
   text: string;
   canMerge: boolean; // somebody else has saved: theirs can be loaded with these changes on top
+  isOther?: boolean; // another recording has taken the place of this one: nothing of it is what is shown here
 }
 
 /**
@@ -35,8 +36,8 @@ export class CycleDesk {
     private readonly context: Context,
     private readonly id: string,
     private readonly changed: () => void,
-    /** As OpenRecording has it. */
-    private readonly writing: () => (written: boolean) => void,
+    /** As OpenRecording has them. */
+    private readonly recording: { writing: () => (written: boolean) => void; reload: () => void },
   ) {
     this.latest = new Latest(context.signal);
     context.signal.addEventListener("abort", () => clearTimeout(this.timer));
@@ -223,7 +224,7 @@ export class CycleDesk {
     clearTimeout(this.timer);
     this.isSaving = true;
     this.changed();
-    const end = this.writing();
+    const end = this.recording.writing();
     try {
       const body = { recording: this.id, version: this.version, uuid: this.uuid, author, ...this.wanted(draft) };
       const saved = await this.context.api.post<CycleView>("/api/cycles/save", body);
@@ -257,14 +258,22 @@ export class CycleDesk {
         this.context.api.get<CycleView>("/api/cycles", { id: this.id }, signal),
       );
       if (!view) return;
+      if (view.uuid !== uuid) return this.leave();
       this.begin(view);
       keepDraft(this.id, null);
-      if (withMine && draft && saved) this.putOnTop(saved, draft, view.uuid === uuid);
+      if (withMine && draft && saved) this.putOnTop(saved, draft, true);
       this.soon();
     } catch (error) {
       this.fail(error);
     }
     this.changed();
+  }
+
+  /** For the recording that is there now: traces and all are read anew. */
+  leave(): void {
+    keepDraft(this.id, null);
+    this.recording.reload();
+    this.context.say("Another recording has taken the place of this one: what was changed in it is not put on top.");
   }
 
   private putOnTop(base: Draft, mine: Draft, isSame: boolean): void {
@@ -290,6 +299,7 @@ export class CycleDesk {
   private fail(error: unknown): void {
     if (this.context.signal.aborted) return;
     const text = error instanceof Error ? error.message : String(error);
-    this.trouble = { text, canMerge: error instanceof ApiError && error.status === 409 };
+    const status = error instanceof ApiError ? error.status : 0;
+    this.trouble = { text, canMerge: status === 409, isOther: status === 410 };
   }
 }

@@ -39,15 +39,13 @@ export class CyclesTab {
     const { about, id } = recording;
     const { api, state } = context;
     this.loop = new CycleLoop(recording.name);
-    this.desk = new CycleDesk(
-      context,
-      id,
-      () => this.show(),
-      () => {
+    this.desk = new CycleDesk(context, id, () => this.show(), {
+      writing: () => {
         const end = recording.writing();
         return (written) => end(written, () => void this.look());
       },
-    );
+      reload: () => recording.reload(),
+    });
     this.time = new RecordingTime(api, context.complain, element("div", {}), (from, to, whole) => {
       state.set({ [stateKeys.from]: whole ? null : from, [stateKeys.to]: whole ? null : to });
       this.handles.place();

@@ -55,6 +55,7 @@ export class SaveBar {
             button("Load them without mine", () => void desk.reload(false)),
           ]
         : []),
+      ...(trouble?.isOther ? [button("Read that one, without what was changed here", () => desk.leave())] : []),
     );
   }
 }

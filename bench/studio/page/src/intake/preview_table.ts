@@ -91,7 +91,7 @@ export class PreviewTable {
     const unit = new UnitField(column, (text) => this.chooseUnit(k, text));
     this.channels[k] = channel;
     this.units[k] = unit;
-    const said = column.stamps ? "time stamps" : column.unit ? `[${column.unit}]` : "no unit in the file";
+    const said = saidOfUnit(column);
     return element(
       "div",
       { class: "preview_column" },
@@ -191,4 +191,10 @@ function offer(node: HTMLSelectElement, chosen: string): void {
     values.map((it) => ({ value: it, text: texts[it] ?? it })),
     chosen,
   );
+}
+
+function saidOfUnit({ stamps, unit, unknown_unit }: PreviewColumn): string {
+  if (stamps) return "time stamps";
+  if (unit) return `[${unit}]`;
+  return unknown_unit ? `[${unknown_unit}]: how many are one unit?` : "no unit in the file";
 }

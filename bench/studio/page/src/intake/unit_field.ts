@@ -43,7 +43,8 @@ export class UnitField {
     if (document.activeElement === this.text) return;
     const own = needsFrame && this.column.unit ? ["", "sensor", "world"] : [""];
     const offered = [...own, ...units];
-    const values = [...offered, ...(offered.includes(unit) ? [] : [unit]), another];
+    const isToBeTyped = unit.includes("?"); // how many counts are one, which nobody here can know
+    const values = [...offered, ...(offered.includes(unit) || isToBeTyped ? [] : [unit]), another];
     const asInFile = `${this.column.unit}, as the file says`;
     const words: Record<string, string> = {
       "": needsFrame ? "– unit and frame –" : this.column.unit ? asInFile : "– unit –",
@@ -54,9 +55,9 @@ export class UnitField {
     setOptions(
       this.list,
       values.map((it) => ({ value: it, text: words[it] ?? it })),
-      unit,
+      isToBeTyped ? another : unit,
     );
-    this.text.hidden = true;
+    this.text.hidden = !isToBeTyped;
     this.text.value = unit;
   }
 }

@@ -55,7 +55,7 @@ export class InspectionPanel {
       { class: it.good ? "" : "flagged" },
       element(
         "th",
-        { scope: "row" },
+        { scope: "row", "data-value": it.number },
         button(`${it.good ? "" : "⚑ "}${it.number}`, press, { class: "link", "aria-label": `Show cycle ${it.number}` }),
       ),
       ...numbers.map(number),

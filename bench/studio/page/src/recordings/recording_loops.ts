@@ -179,7 +179,11 @@ export class RecordingLoops {
     const apart = several && this.beside.checked;
     const figures = (apart ? all : [all.flat()]).map((curves) => {
       const drawn = curves.map((it) => ({ ...it, x: x.of(it.x), y: y.of(it.y) }));
-      return figureOf(x.label, y.label, { curves: drawn, notes: notesOf(kind), ordered: orderInWords(curves) });
+      return figureOf(x.label, y.label, {
+        curves: drawn,
+        notes: notesOf(kind, answers),
+        ordered: orderInWords(curves),
+      });
     });
     const names = apart
       ? answers.flatMap((it, k) => (it ? [name(k)] : []))
@@ -206,11 +210,19 @@ export class RecordingLoops {
   }
 }
 
-function notesOf(kind: Kind): string[] {
+function notesOf(kind: Kind, answers: readonly (Loops | null)[]): string[] {
   if (kind === "average") return ["Averages of the cycles on a grid of positions."];
-  return [
-    "Of each cycle at most 600 points: of every stretch the first and last row and those of extreme position and force.",
-  ];
+  const thinned = answers.flatMap((it) => (it ? [thinnedInWords(it)] : [])).find(Boolean);
+  return thinned
+    ? [`${thinned}: of every stretch the first and last row and those of extreme position and force.`]
+    : ["All rows of the cycles."];
+}
+
+/** Empty where every row is drawn. */
+function thinnedInWords({ loops }: Loops): string {
+  const rows = loops.reduce((sum, it) => sum + it.rows, 0);
+  const points = loops.reduce((sum, it) => sum + it.position.length, 0);
+  return points < rows ? `${points.toLocaleString("en-GB")} of ${counted(rows, "row")} drawn` : "";
 }
 
 function inWords(loops: Loops, kind: Kind, first: number): string {
@@ -224,6 +236,10 @@ function inWords(loops: Loops, kind: Kind, first: number): string {
       averaged > 0 && averaged < all ? `${averaged} of ${counted(all, "cycle")}: the others are left out` : "";
     return `Average of ${some || counted(all, "cycle")}${found}`;
   }
-  if (kind === "one") return `Cycle ${loops.loops[0]?.cycle ?? first + 1} of ${all}${found}`;
-  return `Cycles ${first + 1} to ${first + loops.loops.length} of ${all}${found}`;
+  const thinned = thinnedInWords(loops);
+  const which =
+    kind === "one"
+      ? `Cycle ${loops.loops[0]?.cycle ?? first + 1} of ${all}`
+      : `Cycles ${first + 1} to ${first + loops.loops.length} of ${all}`;
+  return `${which}${found}${thinned ? `; ${thinned}` : ""}`;
 }

@@ -17,7 +17,8 @@ const coldTail = (point: ChartPoint): number | null => (point.cold_ticks === und
 const fronts = (point: ChartPoint): string =>
   [point.on_front ? "median" : "", point.on_cold_front ? "cold" : ""].filter(Boolean).join(", ");
 
-function tableOf(source: string, points: readonly ChartPoint[], open: (point: ChartPoint) => void): HTMLElement {
+function tableOf(chart: ChartFile, open: (point: ChartPoint) => void): HTMLElement {
+  const unit = chart.force_unit ?? "N";
   const columns = [
     {
       head: "law",
@@ -48,7 +49,7 @@ function tableOf(source: string, points: readonly ChartPoint[], open: (point: Ch
       key: (point: ChartPoint) => coldTail(point) ?? Infinity,
     },
     {
-      head: "error [N]",
+      head: `error [${unit}]`,
       text: (point: ChartPoint) => plain(point.error_n),
       key: (point: ChartPoint) => point.error_n ?? Infinity,
     },
@@ -74,7 +75,7 @@ function tableOf(source: string, points: readonly ChartPoint[], open: (point: Ch
       key: (point: ChartPoint) => fronts(point) || "none",
     },
   ];
-  return new SortableTable(`Every point of ${source}`, columns, points, open).root;
+  return new SortableTable(`Every point of ${chart.source}`, columns, chart.points, open).root;
 }
 
 /** A chart as it was written: points that open their laws, and the choice of one beside it. */
@@ -116,11 +117,11 @@ export class ChartPage {
       element(
         "p",
         { class: "quiet" },
-        `Errors towards ${chart.reference}. JND ${withUnit(chart.jnd_n, "N")}; a tick is ${withUnit(1 / chart.rate_hz, "s")}.`,
+        `Errors towards ${chart.reference}. JND ${withUnit(chart.jnd_n, chart.force_unit ?? "N")}; a tick is ${withUnit(1 / chart.rate_hz, "s")}.`,
         unjudged > 0 ? ` The stability of ${unjudged} of ${chart.points.length} points was not judged.` : null,
       ),
       choice.root,
-      tableOf(chart.source, chart.points, (point) => this.open(chart.points.indexOf(point))),
+      tableOf(chart, (point) => this.open(chart.points.indexOf(point))),
       ...chart.notes.map((it) => element("p", { class: "quiet" }, it)),
     );
   }

@@ -84,7 +84,7 @@ export class ChartPlot {
         class: `point${on_front ? " on_front" : ""}${spot.of === this.opened ? " opened" : ""}`,
         role: "button",
         tabindex: place === this.current ? 0 : -1,
-        "aria-label": pointInWords(this.point(spot)),
+        "aria-label": pointInWords(this.point(spot), this.chart.force_unit),
         keydown: (event: KeyboardEvent) => this.key(event, spot),
         focus: () => this.tell(spot, place),
         // Of who presses it without a pointer.
@@ -118,7 +118,7 @@ export class ChartPlot {
   }
 
   private tell(at: Spot, place: number): void {
-    this.readout.textContent = pointInWords(this.point(at));
+    this.readout.textContent = pointInWords(this.point(at), this.chart.force_unit);
     if (place < 0 || place === this.current) return;
     this.marks[this.current]?.setAttribute("tabindex", "-1");
     this.current = place;
@@ -145,9 +145,9 @@ export class ChartPlot {
 }
 
 /** One line of a point, for the read-out and for who hears it. */
-function pointInWords(point: ChartPoint): string {
+function pointInWords(point: ChartPoint, unit = "N"): string {
   const cost = `${withUnit(1e-9 * (point.p50_ns ?? 0), "s")} a tick, 99.9 % within ${withUnit(1e-9 * (point.p999_ns ?? NaN), "s")}`;
-  const error = `error ${withUnit(point.error_n, "N")} (${plain(point.error_jnd, 2)} JND)`;
+  const error = `error ${withUnit(point.error_n, unit)} (${plain(point.error_jnd, 2)} JND)`;
   const stable = point.stable ? "" : `; stable: ${stabilityInWords(point)}`;
   const front = point.on_front ? "; on the front" : "";
   return `${point.law}, ${point.fidelity}: ${cost}; ${error}; ${point.parameters} parameters${front}${stable}`;

@@ -21,11 +21,16 @@ export function drawerTable(study: Study): HTMLElement {
     element(
       "table",
       { class: "drawer" },
-      element("caption", {}, `${study.recordings} of ${study.files} files take part`),
+      element("caption", {}, takePart(study)),
       element("thead", {}, element("tr", {}, ...heads.map((it) => element("th", { scope: "col" }, it)))),
       element("tbody", {}, ...study.drawer.map(row)),
     ),
   );
+}
+
+function takePart({ recordings, files, counted }: Study): string {
+  const all = `${recordings} of ${files} files take part`;
+  return counted === null ? all : `${all}, ${counted} of them ${counted === 1 ? "counts" : "count"}`;
 }
 
 function row(it: DrawerRecording): HTMLElement {

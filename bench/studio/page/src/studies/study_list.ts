@@ -5,7 +5,7 @@ import { stateBadge } from "./study_state";
 /** The studies of the workspace with their state and what is to be known of their files. */
 export function studyList(studies: readonly StudyEntry[]): HTMLElement {
   if (studies.length === 0) return none();
-  const heads = ["Study", "State", "Recordings", "Failed", "Doubted", "Tissues", "Speeds", "Specimens"];
+  const heads = ["Study", "State", "Recordings", "Count", "Failed", "Doubted", "Tissues", "Speeds", "Specimens"];
   return element(
     "div",
     { class: "scrolled" },
@@ -31,7 +31,7 @@ function none(): HTMLElement {
 function row(it: StudyEntry): HTMLElement {
   const name = element("th", { scope: "row" }, element("a", { href: `#/studies/${it.id}` }, it.name));
   if (it.error)
-    return element("tr", {}, name, element("td", { colspan: 7, class: "wrong" }, `Cannot be read: ${it.error}`));
+    return element("tr", {}, name, element("td", { colspan: 8, class: "wrong" }, `Cannot be read: ${it.error}`));
   const count = (value: number | null, marked: boolean): HTMLElement =>
     element("td", { class: marked && value ? "number wrong" : "number" }, value === null ? "–" : String(value));
   return element(
@@ -40,6 +40,11 @@ function row(it: StudyEntry): HTMLElement {
     name,
     element("td", {}, stateBadge(it)),
     element("td", { class: "number" }, recordingsOf(it)),
+    element(
+      "td",
+      { class: it.counted === 0 ? "number wrong" : "number" },
+      it.counted === null ? "–" : String(it.counted),
+    ),
     count(it.failed, true),
     count(it.doubted, true),
     element("td", {}, inShort(it.tissues)),

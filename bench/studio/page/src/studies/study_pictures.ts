@@ -83,6 +83,7 @@ function legend(): HTMLElement {
     { class: "small_legend", "aria-label": "What the points mean" },
     element("li", {}, "Resisting force over penetration:"),
     item("counts", "counts"),
+    item("left_out", "of a recording that is left out"),
     item("flagged", "of a flagged cycle"),
     item("idle", "idle"),
   );

@@ -316,6 +316,9 @@ export const tests = {
     await until("that another took its place is said", async () =>
       (await again.textContent(".cycle_trouble")).includes("Another recording has taken the place"),
     );
+    await again.getByRole("button", { name: "Read that one, without what was changed here" }).click();
+    await until("the other one is read", async () => (await state(again)) !== "not saved");
+    expect(await again.locator(".cycle_trouble").isHidden(), "nothing is in the way any more");
     expect(wanted > 0, "a boundary was moved");
   },
 

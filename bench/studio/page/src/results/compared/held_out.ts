@@ -40,7 +40,7 @@ export function heldOutFigure(file: FitFile, order: readonly LawFit[]): Figure {
       ...(floor == null ? [] : [{ at: floor, label: "the best curve of position and speed", label_after: false }]),
     ],
     x_ticks: order.map((it, i) => ({ at: i + 1, name: it.model })),
-    x_range: [0.5, order.length + 0.5],
+    x_range: [0.5, 1.45 * order.length + 0.5], // what the levels are called stands right of all marks
     y_range: [0, 1.1 * Math.max(file.jnd, line, ...all.flatMap((it) => it.y.map((value) => value ?? 0)))],
     notes: [`Errors of ${file.settings.folds || "no"} folds.`],
   });
