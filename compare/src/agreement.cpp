@@ -50,8 +50,8 @@ std::vector<BandCoherence> coherence_of(std::span<const double> a, std::span<con
   return bands;
 }
 
-ChannelAgreement agreement_of(const Channel& expected, const Channel& got, double period_s,
-                              double most_lag_s) {
+ChannelAgreement agreement_of(const Channel& expected, const Channel& got, double period_s, double most_lag_s,
+                              const Stretch& stretch) {
   ChannelAgreement result{.channel = {.name = expected.name, .unit = expected.unit}};
   // Rows in which either is no number say nothing of the others.
   const auto is_number = [&](std::size_t row) {
@@ -91,7 +91,9 @@ ChannelAgreement agreement_of(const Channel& expected, const Channel& got, doubl
   result.correlation = ee > 0.0 && gg > 0.0 ? eg / std::sqrt(ee * gg) : 0.0;
   if (ee > 0.0 && gg > 0.0 && count == rows) {
     const auto most = static_cast<std::size_t>(std::max(4.0, most_lag_s / period_s));
-    if (const auto fit = fit_lag(expected.value, got.value, {.most_ticks = most, .free_gain = true})) {
+    const auto fit =
+        fit_lag(stretch.of(expected.value), stretch.of(got.value), {.most_ticks = most, .free_gain = true});
+    if (fit && !fit->is_longer) {
       result.latency_s = fit->ticks * period_s;
       result.latency_std_error_s = fit->std_error * period_s;
     }
@@ -109,8 +111,10 @@ std::vector<ChannelAgreement> agreement(const Series& expected, const Series& go
                                             expected.channels.size()));
   std::vector<ChannelAgreement> all;
   const double period_s = expected.period();
+  const Stretch stretch = longest_stretch(expected.time_s, expected.rows(), period_s);
   for (std::size_t channel = 0; channel < expected.channels.size(); ++channel)
-    all.push_back(agreement_of(expected.channels[channel], got.channels[channel], period_s, most_lag_s));
+    all.push_back(
+        agreement_of(expected.channels[channel], got.channels[channel], period_s, most_lag_s, stretch));
   return all;
 }
 

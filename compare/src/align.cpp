@@ -7,6 +7,7 @@
 
 #include <fmt/core.h>
 
+#include "by_time.h"
 #include "kerf/compare/diagnose.h"
 #include "lag.h"
 
@@ -15,72 +16,11 @@ namespace {
 
 constexpr std::array<std::string_view, 4> align_names{"tick", "time", "position", "lag"};
 
-std::vector<double> times_of(const Series& series) {
-  if (!series.time_s.empty()) return series.time_s;
-  std::vector<double> times;
-  for (std::size_t row = 0; row < series.rows(); ++row) times.push_back(series.time_of(row));
-  return times;
-}
-
 void cut_to(Series& series, std::size_t rows) {
   if (series.time_s.size() > rows) series.time_s.resize(rows);
   for (auto* columns : {&series.channels, &series.positions, &series.velocities}) {
     for (Channel& one : *columns) one.value.resize(rows);
   }
-}
-
-/// Values of `got` at the times of some rows, on straight lines; `times` increase and lie within its own.
-Series at_times(const Series& got, const std::vector<double>& times) {
-  const std::vector<double> own = times_of(got);
-  Series result{.time_s = times, .period_s = got.period_s};
-  std::vector<std::pair<std::size_t, double>> places;  // row before, share of the way to the next
-  std::size_t row = 0;
-  for (const double time : times) {
-    while (row + 2 < own.size() && own[row + 1] <= time) ++row;
-    const double step = own.size() > 1 ? own[row + 1] - own[row] : 1.0;
-    places.emplace_back(row, own.size() > 1 ? std::clamp((time - own[row]) / step, 0.0, 1.0) : 0.0);
-  }
-  const auto take = [&](const std::vector<Channel>& from, std::vector<Channel>& to) {
-    for (const Channel& one : from) {
-      to.push_back({.name = one.name, .unit = one.unit});
-      for (const auto& [before, share] : places) {
-        const double value = one.value[before];
-        // A whole row is taken as it is, to the last bit.
-        to.back().value.push_back(share == 0.0   ? value
-                                  : share == 1.0 ? one.value[before + 1]
-                                                 : value + share * (one.value[before + 1] - value));
-      }
-    }
-  };
-  take(got.channels, result.channels);
-  take(got.positions, result.positions);
-  take(got.velocities, result.velocities);
-  return result;
-}
-
-/// By times, those of `got` less a lag.
-Aligned by_time(const Series& expected, Series got, double lag_s) {
-  got.time_s = times_of(got);
-  for (double& time : got.time_s) time -= lag_s;
-  const std::vector<double> times = times_of(expected);
-  std::vector<std::size_t> rows;
-  std::vector<double> chosen;
-  const double slack = 1e-9 * std::max(1.0, std::abs(times.back()));
-  for (std::size_t row = 0; row < times.size(); ++row) {
-    if (times[row] < got.time_s.front() - slack || times[row] > got.time_s.back() + slack) continue;
-    rows.push_back(row);
-    chosen.push_back(times[row]);
-  }
-  if (rows.size() < 2)
-    throw std::invalid_argument(fmt::format(
-        "the times do not overlap: {:.6g} to {:.6g} s and {:.6g} to {:.6g} s; align by tick or lag",
-        times.front(), times.back(), got.time_s.front(), got.time_s.back()));
-  Aligned result{.expected = rows_of(expected, rows), .got = at_times(got, chosen)};
-  result.expected.time_s = chosen;
-  if (rows.size() < times.size())
-    result.notes.push_back(fmt::format("{} of {} rows lie at times that only one run has, and are left out",
-                                       times.size() - rows.size(), times.size()));
-  return result;
 }
 
 /// Rows of one move in one direction.
@@ -185,6 +125,66 @@ Aligned by_position(const Series& expected, const Series& got) {
   return result;
 }
 
+/// What the forces of all channels say together.
+struct LagSearch {
+  std::optional<Lag> lag;
+  double most_s = 0.0;     ///< that was looked for
+  bool is_longer = false;  ///< at the longest there is least left of those channels that tell of any
+};
+
+LagSearch search_lag(const Series& expected, const Series& got, double most_lag_s) {
+  const double period_s = expected.period();
+  const auto most = static_cast<std::size_t>(std::max(4.0, most_lag_s / period_s));
+  const Stretch rows = longest_stretch(expected.time_s, std::min(expected.rows(), got.rows()), period_s);
+  LagSearch result{.most_s = std::min(most_lag_s, static_cast<double>(rows.count / 4) * period_s)};
+  double weights = 0.0;
+  double sum = 0.0;
+  Lag lag;
+  double best = 1e300;
+  for (std::size_t channel = 0; channel < expected.channels.size(); ++channel) {
+    const auto fit = fit_lag(rows.of(expected.channels[channel].value), rows.of(got.channels[channel].value),
+                             {.most_ticks = most, .free_gain = true});
+    if (!fit) continue;
+    if (fit->is_longer || std::abs(fit->ticks) * period_s > most_lag_s + 0.5 * period_s) {
+      result.is_longer = true;
+      continue;
+    }
+    const double error = std::max(fit->std_error, 1e-9);
+    weights += 1.0 / (error * error);
+    sum += fit->ticks / (error * error);
+    if (error < best) lag.channel = expected.channels[channel].name;
+    best = std::min(best, error);
+  }
+  if (weights == 0.0) return result;
+  lag.ticks = sum / weights;
+  lag.seconds = lag.ticks * period_s;
+  lag.std_error_s = period_s / std::sqrt(weights);
+  result.lag = lag;
+  result.is_longer = false;
+  return result;
+}
+
+Aligned by_lag(const Series& expected, const Series& got, double most_lag_s) {
+  // On one grid first: a lag is told in rows of the same period.
+  Series same = got;
+  if (!same.time_s.empty()) {
+    const double begin = same.time_s.front() - (expected.time_s.empty() ? 0.0 : expected.time_s.front());
+    for (double& time : same.time_s) time -= begin;
+  }
+  Aligned beside = by_time(expected, same, 0.0);
+  const LagSearch search = search_lag(beside.expected, beside.got, most_lag_s);
+  if (search.is_longer) {
+    beside.no_lag_within_s = search.most_s;
+    return beside;
+  }
+  if (!search.lag)
+    throw std::invalid_argument(
+        "no lag can be told: no force changes, or there are fewer than 80 rows; align by tick or time");
+  Aligned result = by_time(expected, same, search.lag->seconds);
+  result.lag = search.lag;
+  return result;
+}
+
 }  // namespace
 
 AlignBy align_by(std::string_view name) {
@@ -198,29 +198,7 @@ AlignBy align_by(std::string_view name) {
 std::string_view name_of(AlignBy by) noexcept { return align_names[static_cast<std::size_t>(by)]; }
 
 std::optional<Lag> lag_between_runs(const Series& expected, const Series& got, double most_lag_s) {
-  const double period_s = expected.period();
-  const auto most = static_cast<std::size_t>(std::max(4.0, most_lag_s / period_s));
-  const std::size_t rows = std::min(expected.rows(), got.rows());
-  double weights = 0.0;
-  double sum = 0.0;
-  Lag lag;
-  double best = 1e300;
-  for (std::size_t channel = 0; channel < expected.channels.size(); ++channel) {
-    const auto fit =
-        fit_lag(std::span(expected.channels[channel].value).first(rows),
-                std::span(got.channels[channel].value).first(rows), {.most_ticks = most, .free_gain = true});
-    if (!fit) continue;
-    const double error = std::max(fit->std_error, 1e-9);
-    weights += 1.0 / (error * error);
-    sum += fit->ticks / (error * error);
-    if (error < best) lag.channel = expected.channels[channel].name;
-    best = std::min(best, error);
-  }
-  if (weights == 0.0) return {};
-  lag.ticks = sum / weights;
-  lag.seconds = lag.ticks * period_s;
-  lag.std_error_s = period_s / std::sqrt(weights);
-  return lag;
+  return search_lag(expected, got, most_lag_s).lag;
 }
 
 Aligned aligned(const Series& expected, const Series& got, const AlignOptions& options) {
@@ -229,22 +207,8 @@ Aligned aligned(const Series& expected, const Series& got, const AlignOptions& o
       return by_time(expected, got, 0.0);
     case AlignBy::position:
       return by_position(expected, got);
-    case AlignBy::lag: {
-      // On one grid first: a lag is told in rows of the same period.
-      Series same = got;
-      if (!same.time_s.empty()) {
-        const double begin = same.time_s.front() - (expected.time_s.empty() ? 0.0 : expected.time_s.front());
-        for (double& time : same.time_s) time -= begin;
-      }
-      Aligned beside = by_time(expected, same, 0.0);
-      const auto lag = lag_between_runs(beside.expected, beside.got, options.most_lag_s);
-      if (!lag)
-        throw std::invalid_argument(
-            "no lag can be told: no force changes, or there are fewer than 80 rows; align by tick or time");
-      Aligned result = by_time(expected, same, lag->seconds);
-      result.lag = lag;
-      return result;
-    }
+    case AlignBy::lag:
+      return by_lag(expected, got, options.most_lag_s);
     case AlignBy::tick:
       break;
   }

@@ -51,6 +51,14 @@ void add_to(std::vector<Interval>& intervals, std::size_t tick) {
   }
 }
 
+/// A limit of a difference, and what rounding makes of one that is as large: a few last digits of both
+/// numbers, and no more than a millionth of the limit.
+double with_rounding(double limit, double expected, double got) {
+  const double last_digits =
+      4.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(expected), std::abs(got));
+  return limit + std::min(last_digits, 1e-6 * limit);
+}
+
 /// A limit of the whole run that is not kept, in words.
 std::string beyond(const ChannelName& channel, const char* what, double value, double limit,
                    const char* per = "") {
@@ -128,11 +136,13 @@ class Comparing {
       if (!std::isfinite(apart)) ++about.not_finite;
       one.jnds = apart / jnd.at(one.expected);
       if (std::isfinite(apart)) {
+        if (apart > about.largest_difference) about.largest_at = tick;
         about.largest_difference = std::max(about.largest_difference, apart);
         about.largest_jnds = std::max(about.largest_jnds, one.jnds);
       }
       // A number that is not finite is within no tolerance, and not right because it was stored.
-      const bool is_outside = (tolerance.exact && !same) || !(apart <= one.allowed);
+      const bool is_outside =
+          (tolerance.exact && !same) || !(apart <= with_rounding(one.allowed, one.expected, one.got));
       if (is_outside) take_outside(about, tick);
       const Badness badness{is_outside,
                             std::isfinite(one.jnds) ? one.jnds : std::numeric_limits<double>::infinity()};
@@ -162,11 +172,18 @@ class Comparing {
         exact ? fmt::format("the force differs in {} of {} ticks", result_.differing, result_.expected_rows)
               : fmt::format("the force is outside the tolerance in {} of {} ticks, and differs at all in {}",
                             result_.outside, result_.expected_rows, result_.differing);
-    fail(fmt::format("{}; worst at tick {}, {}", counts, whole_tick(worst.tick),
-                     worst_in_words(worst, channel, exact)));
+    fail(fmt::format("{}; worst at tick {}, {}{}", counts, whole_tick(worst.tick),
+                     worst_in_words(worst, channel, exact), farther(result_.channels[worst.channel])));
     if (!std::isfinite(worst.expected))
       fail(fmt::format("what is expected of {} is no finite number from tick {} on: it was never right",
                        channel.name, whole_tick(worst.tick)));
+  }
+
+  /// Where the difference is larger, but of a force of which a hand feels less.
+  [[nodiscard]] std::string farther(const ChannelComparison& about) const {
+    if (!(about.largest_difference > std::abs(result_.worst->difference()))) return "";
+    return fmt::format("; the largest difference, {:.3g} {}, is at tick {}", about.largest_difference,
+                       about.channel.unit, whole_tick(about.largest_at));
   }
 
   /// What a limit of each tick does not see.
@@ -176,7 +193,8 @@ class Comparing {
     if (tolerance.exact || about.largest_difference == 0.0 || about.not_finite > 0) return;
     const std::string& unit = about.channel.unit;
     const auto peak = tolerance.peak.of(unit);
-    if (const double apart = about.largest_got - about.largest_expected; peak && std::abs(apart) > *peak)
+    if (const double apart = about.largest_got - about.largest_expected;
+        peak && std::abs(apart) > with_rounding(*peak, about.largest_expected, about.largest_got))
       fail(beyond(about.channel, "the largest force is off by", apart, *peak));
     const auto slew = tolerance.slew.of(unit);
     const auto drift = tolerance.drift.of(unit);
@@ -249,10 +267,19 @@ void count_in_whole_run(Comparison& part, const MatchedRows& rows) {
   }
   if (part.first_outside) whole(*part.first_outside);
   for (ChannelComparison& one : part.channels) {
+    whole(one.largest_at);
     if (one.first_outside) whole(*one.first_outside);
     for (Interval& interval : one.intervals)
       interval = {rows.expected[interval.begin], rows.expected[interval.end - 1] + 1};
   }
+}
+
+/// Where rows are missing that forces which are not alike could not tell of.
+std::string places_by_time(const MatchedRows& rows) {
+  std::size_t first = 0;
+  while (first < rows.expected.size() && rows.expected[first] == first && rows.got[first] == first) ++first;
+  return fmt::format(", by the times {}at tick {}",
+                     rows.edits > 1 ? fmt::format("at {} places, first ", rows.edits) : "", first);
 }
 
 }  // namespace
@@ -270,7 +297,8 @@ Comparison compare_with_gaps(const Series& expected, const Series& got, const To
   Comparison matched = Comparing(both, rows_of(got, rows->got), tolerance, &*rows).run();
   count_in_whole_run(matched, *rows);
   for (std::string& message : matched.messages) message = "besides, of the ticks that both have: " + message;
-  matched.messages.insert(matched.messages.begin(), straight.messages.front());
+  matched.messages.insert(matched.messages.begin(),
+                          straight.messages.front() + (rows->by_time ? places_by_time(*rows) : ""));
   matched.passed = false;
   matched.expected_rows = straight.expected_rows;
   matched.got_rows = straight.got_rows;

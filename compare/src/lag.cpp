@@ -193,6 +193,14 @@ FineLag fine_lag(const Shifted& shifted, long whole) {
   return best;
 }
 
+/// Whether a lag stands at the end of what was looked for, and a tick beyond it less is left.
+bool is_longer(const Shifted& shifted, double ticks, std::size_t most_ticks) {
+  const double most = std::copysign(static_cast<double>(most_ticks), ticks);
+  if (std::abs(ticks) <= std::abs(most) - 1.0) return false;
+  const double beyond = most + std::copysign(1.0, ticks);
+  return shifted.line(beyond, Kernel::linear).left < shifted.line(most, Kernel::linear).left;
+}
+
 }  // namespace
 
 std::vector<std::size_t> rows_for_all(std::size_t begin, std::size_t end) {
@@ -211,6 +219,19 @@ std::vector<std::size_t> rows_for_all(std::size_t begin, std::size_t end) {
     for (std::size_t row = from; row < from + block; ++row) rows.push_back(row);
   }
   return rows;
+}
+
+Stretch longest_stretch(const std::vector<double>& time_s, std::size_t rows, double period_s) {
+  constexpr double longest_step = 2.5;  // periods
+  const Stretch all{.count = rows};
+  Stretch best;
+  Stretch now;
+  for (std::size_t row = 0; row < std::min(rows, time_s.size()); ++row) {
+    if (row > 0 && time_s[row] - time_s[row - 1] > longest_step * period_s) now = {.begin = row};
+    ++now.count;
+    if (now.count > best.count) best = now;
+  }
+  return 4 * best.count < rows ? all : best;
 }
 
 std::optional<LagFit> fit_lag(std::span<const double> expected, std::span<const double> got,
@@ -242,14 +263,16 @@ std::optional<LagFit> fit_lag(std::span<const double> expected, std::span<const 
   LagFit best = raw.fit;
   double variance = shifted.variance(best);
   double slopes = shifted.slopes(best);
+  best.is_longer = is_longer(shifted, best.ticks, used.most_ticks);
   if (raw.left > explained * least) {
     // Half way between two rows their noise averages out, which would pass for a better fit.
     const std::vector<double> smooth_e = smoothed(expected);
     const std::vector<double> smooth_g = smoothed(got);
     const Shifted calm(smooth_e, smooth_g, used);
     best = fine_lag(calm, least_whole(calm, whole, most)).fit;  // which noise has moved by ticks
-    slopes = calm.slopes(best);                                 // those of the noise are none of the signal's
-    best.kernel = Kernel::sinc;                                 // which keeps the noise as it is
+    best.is_longer = is_longer(calm, best.ticks, used.most_ticks);
+    slopes = calm.slopes(best);  // those of the noise are none of the signal's
+    best.kernel = Kernel::sinc;  // which keeps the noise as it is
     variance = shifted.variance(best);
   }
   if (!(slopes > 0.0)) return {};

@@ -52,6 +52,65 @@ TEST(Align, ByTimeKeepsTheBitsOfRowsAtTheSameTimes) {
   EXPECT_EQ(apart(aligned(run, run, {.by = AlignBy::time})), 0.0);
 }
 
+Series without_rows(Series run, std::size_t begin, std::size_t end) {
+  for (std::vector<double>* column : {&run.time_s, &run.channels[0].value})
+    column->erase(column->begin() + static_cast<std::ptrdiff_t>(begin),
+                  column->begin() + static_cast<std::ptrdiff_t>(end));
+  return run;
+}
+
+TEST(Align, ByTimeDrawsNoLineOverAGap) {
+  const Series whole = timed(0.0, 1e-3, 4000, 0.0, wave);
+  const Series part = without_rows(whole, 2000, 2300);
+  for (const bool of_got : {true, false}) {
+    const Aligned runs = aligned(of_got ? whole : part, of_got ? part : whole, {.by = AlignBy::time});
+    EXPECT_EQ(runs.expected.rows(), 3700U);
+    EXPECT_EQ(apart(runs), 0.0);
+    ASSERT_EQ(runs.gaps.size(), 1U);
+    EXPECT_EQ(runs.gaps[0].of_got, of_got);
+    EXPECT_EQ(runs.gaps[0].rows, 300U);
+    EXPECT_NEAR(runs.gaps[0].begin_s, 1.999, 1e-9);
+    EXPECT_NEAR(runs.gaps[0].end_s, 2.3, 1e-9);
+    EXPECT_THAT(runs.notes,
+                testing::ElementsAre(testing::HasSubstr("300 rows of the other lie in there and are not")));
+  }
+  EXPECT_TRUE(aligned(part, part, {.by = AlignBy::time}).gaps.empty()) << "neither run has anything there";
+}
+
+TEST(Align, ByLagIsNotLedAstrayByAGap) {
+  const Series late = without_rows(timed(0.0, 1e-3, 4000, 0.0137, wave), 2000, 2300);
+  const Aligned runs = aligned(timed(0.0, 1e-3, 4000, 0.0, wave), late, {.by = AlignBy::lag});
+  ASSERT_TRUE(runs.lag);
+  EXPECT_NEAR(runs.lag->seconds, 0.0137, 1e-5);
+  EXPECT_LT(apart(runs), 1e-3);
+  ASSERT_EQ(runs.gaps.size(), 1U);
+  EXPECT_EQ(runs.gaps[0].rows, 301U) << "from 1.986 to 2.286 s";
+}
+
+TEST(Agreement, FindsALatencyOfLessThanARowAcrossAGap) {
+  const Series expected = without_rows(timed(0.0, 1e-3, 4000, 0.0, wave), 2000, 2300);
+  const Series got = without_rows(timed(0.0, 1e-3, 4000, 0.0004, wave), 2000, 2300);
+  EXPECT_NEAR(agreement(expected, got).at(0).latency_s.value(), 0.0004, 1e-6);
+}
+
+TEST(Align, ByLagKnowsOfNoneThatIsLongerThanWasLookedFor) {
+  const Series expected = timed(0.0, 1e-3, 4000, 0.0, wave);
+  const Series late = timed(0.0, 1e-3, 4000, 0.0137, wave);
+  for (const double most_lag_s : {0.002, 0.005, 0.012}) {
+    const Aligned runs = aligned(expected, late, {.by = AlignBy::lag, .most_lag_s = most_lag_s});
+    EXPECT_FALSE(runs.lag);
+    EXPECT_EQ(runs.no_lag_within_s, most_lag_s);
+    EXPECT_EQ(runs.got.channels[0].value, late.channels[0].value) << "nothing is taken out";
+    EXPECT_FALSE(agreement(expected, late, most_lag_s).at(0).latency_s);
+  }
+  for (const double lag_s : {0.005, -0.005, 0.0048}) {
+    const Aligned runs =
+        aligned(expected, timed(0.0, 1e-3, 4000, lag_s, wave), {.by = AlignBy::lag, .most_lag_s = 0.005});
+    ASSERT_TRUE(runs.lag) << "as long as was looked for";
+    EXPECT_NEAR(runs.lag->seconds, lag_s, 1e-5);
+  }
+}
+
 TEST(Align, ByLagSaysHowSureItIs) {
   int within = 0;
   for (unsigned seed = 1; seed <= 20; ++seed) {

@@ -45,6 +45,44 @@ TEST(Compare, MarksWhereAForceIsOutside) {
   EXPECT_EQ(channel.intervals[1].begin, 500U);
 }
 
+TEST(Compare, TakesADifferenceAsLargeAsIsAllowedForAllowed) {
+  std::vector<double> expected;
+  std::vector<double> at_the_edge;
+  std::vector<double> beyond;
+  std::vector<double> by_a_hundredth;
+  for (const double force : strokes()) {
+    expected.push_back(1e-6 * std::round(1e6 * force));
+    at_the_edge.push_back(expected.back() + 0.01);
+    beyond.push_back(expected.back() + 0.0100001);
+    by_a_hundredth.push_back(expected.back() * 1.01);
+  }
+  EXPECT_EQ(
+      compare(run_of(expected), run_of(at_the_edge), {.force_n = 0.01, .peak = {.force = 0.01}}).messages,
+      std::vector<std::string>{});
+  EXPECT_TRUE(compare(run_of(expected), run_of(by_a_hundredth), {.relative = 0.01}).passed);
+  EXPECT_EQ(compare(run_of(expected), run_of(beyond), {.force_n = 0.01}).outside, expected.size());
+  EXPECT_FALSE(compare(run_of({1.0}), run_of({std::nextafter(1.0, 2.0)}), {.force_n = 0.0}).passed);
+}
+
+TEST(Compare, KnowsWhereTheLargestDifferenceIs) {
+  std::vector<double> expected(100, 2.0);
+  std::vector<double> got = expected;
+  expected[20] = 0.0;
+  got[20] = 1.0;   // 20 JNDs
+  got[30] = -1.5;  // 25 of 0.14 N
+  got[40] = 4.0;
+  const Comparison comparison = compare(run_of(expected), run_of(got), {.jnd = 1.0});
+  EXPECT_EQ(comparison.channels[0].largest_difference, 3.5);
+  EXPECT_EQ(comparison.channels[0].largest_at, 30U);
+  expected[20] = -1.5;
+  got[20] = 1.5;  // 28 JNDs, and less than 3.5 N
+  const Comparison felt = compare(run_of(expected), run_of(got), {.jnd = 1.0});
+  EXPECT_EQ(felt.worst->tick, 20U);
+  EXPECT_EQ(felt.channels[0].largest_at, 30U);
+  EXPECT_THAT(felt.messages.at(0), AllOf(HasSubstr("worst at tick 20, theta:"),
+                                         HasSubstr("; the largest difference, 3.5 N, is at tick 30")));
+}
+
 TEST(Compare, HoldsAChannelToItsOwnTolerance) {
   const Series expected = test::six_axes();
   Series got = expected;

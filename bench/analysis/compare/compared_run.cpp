@@ -60,6 +60,7 @@ ComparedRun from_recording(const fs::path& file, const ComparedForce& which) {
                                      .unit = about.position_unit + "/s",
                                      .value = column_of(recording.velocity, axis, axes)});
   }
+  run.kind = RunKind::recording;
   run.sense = commanded ? ForceSense::commanded : ForceSense::measured;
   if (!commanded && !which.measured) run.notes.push_back(fmt::format("{}: the measured force", run.name));
   return run;
@@ -74,6 +75,7 @@ ComparedRun from_stored(const fs::path& file, const std::string& name) {
     throw std::invalid_argument(
         fmt::format("{}: there is no case '{}'; --case takes one of {}", file.string(), name, names_in(all)));
   ComparedRun run{.name = fmt::format("{}, {}", file.string(), found->name), .series = {}, .notes = {}};
+  run.kind = RunKind::stored;
   const std::size_t channels = found->channels.size();
   for (std::size_t i = 0; i < channels; ++i)
     run.series.channels.push_back({.name = found->channels[i].name,
@@ -188,6 +190,15 @@ ComparedRun read_run(const fs::path& file, const ComparedForce& force) {
   }
   compare::require_sound(run.series, run.name);
   return run;
+}
+
+void require_kinds_of(const ComparedForce& force, const ComparedRun& expected, const ComparedRun& got) {
+  const auto neither = [&](RunKind kind) { return expected.kind != kind && got.kind != kind; };
+  if (force.measured && neither(RunKind::recording))
+    throw std::invalid_argument("--measured says nothing of tables and stored forces; it is for recordings");
+  if (!force.stored.empty() && neither(RunKind::stored))
+    throw std::invalid_argument(
+        "--case says nothing of tables and recordings; it is for a suite's stored forces");
 }
 
 void bring_to_one_sense(ComparedRun& expected, ComparedRun& got) {

@@ -63,6 +63,7 @@ json channel_as_json(const RunComparison& result, std::size_t i) {
       {"not_finite", about.not_finite},
       {"intervals", intervals},
       {"largest_difference", json_number(about.largest_difference)},
+      {"largest_tick", about.largest_at},
       {"largest_jnds", json_number(about.largest_jnds)},
       {"largest_expected", json_number(about.largest_expected)},
       {"largest_got", json_number(about.largest_got)},
@@ -76,6 +77,16 @@ json channel_as_json(const RunComparison& result, std::size_t i) {
       {"bands", bands_as_json(about.bands)},
       {"coherence", coherence},
       {"events", events_as_json(result.events[i])}};
+}
+
+json gaps_as_json(const std::vector<compare::TimeGap>& gaps) {
+  json list = json::array();
+  for (const compare::TimeGap& one : gaps)
+    list.push_back({{"run", one.of_got ? "got" : "expected"},
+                    {"from_s", one.begin_s},
+                    {"to_s", one.end_s},
+                    {"rows_not_compared", one.rows}});
+  return list;
 }
 
 }  // namespace
@@ -105,6 +116,8 @@ json comparison_as_json(const RunComparison& result, const RunComparisonOptions&
       {"notes", result.notes},
       {"worst", comparison.worst ? worst_as_json(*comparison.worst, series) : json(nullptr)},
       {"channels", json::array()}};
+  if (!result.runs.gaps.empty()) all["gaps"] = gaps_as_json(result.runs.gaps);
+  if (const auto& most = result.runs.no_lag_within_s) all["no_lag_within_ms"] = 1e3 * *most;
   for (std::size_t i = 0; i < comparison.channels.size(); ++i)
     all["channels"].push_back(channel_as_json(result, i));
   return all;

@@ -35,9 +35,9 @@ std::vector<std::size_t> drawn_rows(const RunComparison& result, std::size_t cha
     const std::size_t end = std::min(apart.size(), row + around);
     for (std::size_t i = row - std::min(row, around); i < end; ++i) rows.push_back(i);
   };
-  if (const auto first = result.comparison.channels[channel].first_outside) add_around(*first);
+  if (const auto first = result.comparison.channels[channel].first_outside) add_around(result.row_of(*first));
   const auto& worst = result.comparison.worst;
-  if (worst && worst->channel == channel) add_around(worst->tick);
+  if (worst && worst->channel == channel) add_around(result.row_of(worst->tick));
   std::ranges::sort(rows);
   rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
   return rows;
@@ -77,7 +77,7 @@ Range range_of(std::initializer_list<std::span<const double>> columns) {
 void mark_outside(Chart& chart, const RunComparison& result, const compare::Tolerance& tolerance,
                   std::size_t channel) {
   const compare::ChannelComparison& about = result.comparison.channels[channel];
-  const auto time_of = [&](std::size_t tick) { return result.runs.expected.time_of(tick); };
+  const auto time_of = [&](std::size_t tick) { return result.runs.expected.time_of(result.row_of(tick)); };
   for (const compare::Interval& one : about.intervals) {
     if (chart.bands.size() == most_bands) break;
     chart.bands.push_back({.begin = time_of(one.begin), .end = time_of(one.end), .colour = Colour::yellow});
@@ -96,7 +96,7 @@ void mark_outside(Chart& chart, const RunComparison& result, const compare::Tole
   const bool has_worst = worst && worst->channel == channel && worst->tick != first;
   const std::size_t last = has_worst ? worst->tick : first;
   const auto share = [&](std::size_t tick) {
-    return static_cast<double>(tick) / static_cast<double>(result.runs.expected.rows());
+    return static_cast<double>(result.row_of(tick)) / static_cast<double>(result.runs.expected.rows());
   };
   // Outwards from both lines, where there is room for it; on one side of two that are near as one text.
   const bool first_before = share(first) > label_share;
@@ -169,6 +169,8 @@ std::string page_of(const RunComparison& result, const std::vector<std::string>&
   if (const auto& lag = result.runs.lag)
     body += fmt::format("<p>A lag of {:+.4f} ms +- {:.4f} ms is taken out.</p>\n", 1e3 * lag->seconds,
                         1e3 * lag->std_error_s);
+  if (const std::string unknown = unknown_lag_in_words(result); !unknown.empty())
+    body += fmt::format("<p>{}.</p>\n", escaped(unknown));
   body += agreement_table(result);
   for (const std::string& figure : figures) body += figure;
   return html_zoom_page(result.got + " beside " + result.expected, body + band_table(result));

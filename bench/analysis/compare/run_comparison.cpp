@@ -76,8 +76,10 @@ RunComparison compare_runs(ComparedRun expected, ComparedRun got, const RunCompa
   const compare::Series& before = whole ? expected.series : result.runs.expected;
   const compare::Series& after = whole ? got.series : result.runs.got;
   // Beside each other lie rows of one moment.
-  if (const auto matched = whole ? compare::matched_rows(before, after) : std::nullopt)
+  if (auto matched = whole ? compare::matched_rows(before, after) : std::nullopt) {
     result.runs = {.expected = rows_of(before, matched->expected), .got = rows_of(after, matched->got)};
+    result.ticks = std::move(matched->expected);
+  }
   if (result.runs.expected.rows() < 2)
     throw std::invalid_argument(
         fmt::format("{} and {}: fewer than two rows to compare", result.expected, result.got));
@@ -109,11 +111,25 @@ RunComparison compare_runs(ComparedRun expected, ComparedRun got, const RunCompa
   return result;
 }
 
+std::size_t RunComparison::row_of(std::size_t tick) const {
+  if (ticks.empty()) return tick;
+  return static_cast<std::size_t>(std::ranges::lower_bound(ticks, tick) - ticks.begin());
+}
+
+std::string unknown_lag_in_words(const RunComparison& result) {
+  if (!result.runs.no_lag_within_s) return "";
+  return fmt::format(
+      "lag unknown: it is longer than the {:.4g} ms that were looked for, and nothing is taken out; a larger "
+      "--max-lag finds it",
+      1e3 * *result.runs.no_lag_within_s);
+}
+
 std::vector<std::string> comparison_lines(const RunComparison& result) {
   std::vector<std::string> lines;
   if (const auto& lag = result.runs.lag)
     lines.push_back(fmt::format("lag {:+.4f} ms +- {:.4f} ms ({:+.4g} ticks), taken out", 1e3 * lag->seconds,
                                 1e3 * lag->std_error_s, lag->ticks));
+  if (const std::string unknown = unknown_lag_in_words(result); !unknown.empty()) lines.push_back(unknown);
   for (std::size_t i = 0; i < result.agreement.size(); ++i) {
     const compare::ChannelAgreement& one = result.agreement[i];
     const compare::ChannelComparison& about = result.comparison.channels[i];

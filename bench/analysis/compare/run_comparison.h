@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,11 @@ struct RunComparison {
   compare::Diagnosis diagnosis;
   std::vector<std::string> names;  ///< what changed, a line each; none if the runs are within the tolerance
   std::vector<std::string> notes;
+  /// Where rows are missing: which ticks of the expected run lie beside each other.
+  std::vector<std::size_t> ticks;
+
+  /// Where a tick of the comparison lies among the rows beside each other.
+  [[nodiscard]] std::size_t row_of(std::size_t tick) const;
 };
 
 /// Puts two runs beside each other and compares them. By tick, runs of different length do not pass, and
@@ -44,6 +50,9 @@ struct RunComparison {
 /// Everything about it, for --json.
 [[nodiscard]] nlohmann::ordered_json comparison_as_json(const RunComparison& result,
                                                         const RunComparisonOptions& options);
+
+/// Where none was found among those that were looked for; else empty.
+[[nodiscard]] std::string unknown_lag_in_words(const RunComparison& result);
 
 /// The same as lines for people.
 [[nodiscard]] std::vector<std::string> comparison_lines(const RunComparison& result);

@@ -1,5 +1,8 @@
 #include "regress/compare.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <fmt/core.h>
 
 namespace kerf::bench {
@@ -73,6 +76,18 @@ ForceComparison compare_forces(const schema::StoredForces& stored, const Rendere
       after_rows, fmt::format("the law faulted in {} ticks where {} are stored{}", got.faults, stored.faults,
                               got.first_fault ? fmt::format(", first in tick {}", *got.first_fault) : ""));
   return result;
+}
+
+const ChannelComparison* farthest_channel(const ForceComparison& comparison) {
+  const auto most = std::ranges::max_element(comparison.channels, {}, &ChannelComparison::largest_jnds);
+  return most == comparison.channels.end() ? nullptr : &*most;
+}
+
+std::string largest_in_words(const ForceComparison& comparison) {
+  const ChannelComparison* const most = farthest_channel(comparison);
+  if (most == nullptr || !comparison.worst) return "none";
+  if (!std::isfinite(comparison.worst->difference())) return "not finite";
+  return fmt::format("{:.3g} {}", most->largest_difference, most->channel.unit);
 }
 
 compare::Diagnosis diagnose(const schema::StoredForces& stored, const RenderedForces& got,

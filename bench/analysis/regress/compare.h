@@ -29,6 +29,11 @@ void add_motion(compare::Series& series, const SampledMotion& motion);
 [[nodiscard]] ForceComparison compare_forces(const schema::StoredForces& stored, const RenderedForces& got,
                                              const Tolerance& tolerance, double period_s = 1e-3);
 
+/// The channel of the largest difference in JNDs; none without channels.
+[[nodiscard]] const ChannelComparison* farthest_channel(const ForceComparison& comparison);
+/// Its largest difference, "4 N"; "none" of forces that do not differ.
+[[nodiscard]] std::string largest_in_words(const ForceComparison& comparison);
+
 /// What the difference looks like: compare::diagnose(). `path`: what the forces
 /// were rendered for now, and were then, unless the facts say that it has changed.
 [[nodiscard]] compare::Diagnosis diagnose(const schema::StoredForces& stored, const RenderedForces& got,

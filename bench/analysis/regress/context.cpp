@@ -54,6 +54,7 @@ json case_as_json(const RegressionOutcome& outcome) {
                         {"unit", one.channel.unit},
                         {"outside", one.outside},
                         {"largest_difference", json_number(one.largest_difference)},
+                        {"largest_tick", one.largest_at},
                         {"largest_jnds", json_number(one.largest_jnds)},
                         {"largest_expected", json_number(one.largest_expected)}});
   }

@@ -96,10 +96,10 @@ std::vector<std::size_t> drawn_channels(const ForceComparison& comparison) {
 
 std::string summary_table(const SuiteOutcome& outcome) {
   std::vector<std::vector<std::string>> rows{{"case", "law", "ticks", "result", "outside the tolerance",
-                                              "different at all", "worst difference", "JND", "tick cost",
+                                              "different at all", "largest difference", "JND", "tick cost",
                                               "stored"}};
   for (const RegressionOutcome& one : outcome.cases) {
-    const auto& worst = one.comparison.worst;
+    const ChannelComparison* const most = farthest_channel(one.comparison);
     if (!one.error.empty()) {
       rows.push_back({one.about.name, "", "", "ERROR", "", "", "", "", "", ""});
       continue;
@@ -111,11 +111,8 @@ std::string summary_table(const SuiteOutcome& outcome) {
     }
     rows.push_back({one.about.name, renderer_of(one.about), fmt::format("{}", one.comparison.got_rows),
                     one.passed() ? "passed" : "FAILED", fmt::format("{}", one.comparison.outside),
-                    fmt::format("{}", one.comparison.differing),
-                    worst ? fmt::format("{:.3g} {}", std::abs(worst->difference()),
-                                        one.stored.channels[worst->channel].unit)
-                          : "0",
-                    worst ? fmt::format("{:.2g}", worst->jnds) : "0",
+                    fmt::format("{}", one.comparison.differing), largest_in_words(one.comparison),
+                    most ? fmt::format("{:.2g}", most->largest_jnds) : "0",
                     one.tick_cost ? fmt::format("{:.3g}", *one.tick_cost) : "",
                     one.stored.date.substr(0, 10)});
   }

@@ -176,7 +176,7 @@ std::string how_different(const ForceComparison& comparison) {
     return fmt::format("{} samples instead of {}", comparison.got_rows, comparison.expected_rows);
   if (comparison.channels.empty()) return "other channels";
   if (comparison.differing == 0) return "the same forces, bit for bit";
-  const auto most = std::ranges::max_element(comparison.channels, {}, &ChannelComparison::largest_jnds);
+  const ChannelComparison* const most = farthest_channel(comparison);
   return fmt::format("{} of {} ticks differ, {} by up to {:.3g} {} ({:.3g} JND)", comparison.differing,
                      comparison.expected_rows, most->channel.name, most->largest_difference,
                      most->channel.unit, most->largest_jnds);

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "replay/force_noise.h"
+
 namespace kerf::bench {
 namespace {
 
@@ -13,22 +15,6 @@ struct Sample {
   double time_s;
   double size;
 };
-
-/// Standard deviation of white noise upon a smooth force, robustly from its second differences: they hold
-/// noise of six times its variance, and next to nothing of what a cut does between two samples. A rupture is
-/// a few differences among many.
-double noise_of(std::span<const double> force) {
-  constexpr double deviation_of_median = 1.4826;
-  std::vector<double> bends;
-  for (std::size_t i = 2; i < force.size(); ++i) {
-    const double bend = force[i] - 2.0 * force[i - 1] + force[i - 2];
-    if (std::isfinite(bend)) bends.push_back(std::abs(bend));
-  }
-  if (bends.empty()) return 0.0;
-  const auto middle = bends.begin() + static_cast<std::ptrdiff_t>(bends.size() / 2);
-  std::ranges::nth_element(bends, middle);
-  return deviation_of_median * *middle / std::sqrt(6.0);
-}
 
 /// Contact and release.
 class ContactFinder {
@@ -123,7 +109,7 @@ std::vector<ForceEvent> find_force_events(std::span<const double> time_s, std::s
                                           const ForceEventOptions& options) {
   if (time_s.size() != force.size()) throw std::invalid_argument("times and forces differ in number");
   ContactFinder contacts(options.contact > 0.0 ? options.contact : 2.0 * options.jnd.threshold);
-  DropFinder drops(options, noise_of(force));
+  DropFinder drops(options, options.noise ? *options.noise : noise_of(force));
   std::vector<ForceEvent> events;
   for (std::size_t i = 0; i < force.size(); ++i) {
     if (!std::isfinite(force[i])) continue;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -25,12 +26,13 @@ struct ForceEventOptions {
   double contact = 0.0;     ///< |F| above which there is contact, until it is below half of it; 0: twice the
                             ///< threshold of the JND
   double window_s = 0.005;  ///< a drop falls by more than the JND at its peak, and noise, within so long
+  std::optional<double> noise;  ///< standard deviation, where the force itself tells of less: noise_of()
 };
 
 /// Finds the events that a hand would date a cut by, from the size of a force alone, so that its sign does
 /// not matter: contact and release (a threshold with hysteresis), and drops, as a rupture makes them. A drop
 /// is dated by the first sample by which the fall exceeds the JND at its peak by as much as noise of the
-/// force can make (eight standard deviations, from its second differences); it is over once less than half a
+/// force can make (eight standard deviations, noise_of()); it is over once less than half a
 /// JND has been lost within the window. A quick release is a drop too. Values that are not finite are passed
 /// over.
 [[nodiscard]] std::vector<ForceEvent> find_force_events(std::span<const double> time_s,

@@ -148,14 +148,15 @@ AxisComparison compare(const Source& source, const LawTrace& trace, std::size_t 
     result.recorded.push_back((commanded ? sense : 1.0) * recorded[row * axes + axis]);
     result.rendered.push_back(sense * trace.force[row][axis]);
   }
-  const ForceEventOptions events{
+  ForceEventOptions events{
       .jnd = fitting::jnd_of(recording.axes[axis].force_unit, recording.axes[axis].lever),
       .contact = options.contact,
       .window_s = options.window_s};
   measure(recording.time, events.jnd, result);
   const std::span<const double> times(recording.time.data(), trace.force.size());
-  result.recorded_events = find_force_events(times, result.recorded, events);
   result.rendered_events = find_force_events(times, result.rendered, events);
+  if (source.noise) events.noise = (commanded ? source.noise->commanded : source.noise->measured)[axis];
+  result.recorded_events = find_force_events(times, result.recorded, events);
   result.events = match_events(result.recorded_events, result.rendered_events, options.match_s);
   if (commanded) compare_exactly(recording, trace, result);
   return result;

@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "prepare/rows.h"
+#include "replay/force_noise.h"
 #include "signal/quantiles.h"
 
 namespace kerf::bench {
@@ -141,6 +142,16 @@ class Interpolation {
   schema::Recording& to_;
 };
 
+std::vector<double> noise_of_each(const std::vector<double>& force, std::size_t axes) {
+  std::vector<double> noise;
+  std::vector<double> one(force.size() / axes);
+  for (std::size_t axis = 0; axis < axes && !force.empty(); ++axis) {
+    for (std::size_t row = 0; row < one.size(); ++row) one[row] = force[row * axes + axis];
+    noise.push_back(noise_of(one));
+  }
+  return noise;
+}
+
 }  // namespace
 
 Source select_rows(schema::Recording recording, const SelectOptions& options, const std::string& name) {
@@ -240,6 +251,8 @@ Source at_speed(const Source& source, double speed) {
     result.row.push_back(source.row[row]);
   }
   find_gaps(result);
+  result.noise = {.commanded = noise_of_each(from.force_commanded, from.dimensions()),
+                  .measured = noise_of_each(from.force_measured, from.dimensions())};
   return result;
 }
 

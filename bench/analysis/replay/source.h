@@ -26,6 +26,12 @@ struct Gap {
   double end_s = 0.0;
 };
 
+/// Noise of the forces, of each axis; none of what was not recorded.
+struct RecordedNoise {
+  std::vector<double> commanded;
+  std::vector<double> measured;
+};
+
 /// Rows to be replayed, in their order, with finite positions and velocities and times that increase.
 struct Source {
   schema::Recording recording;
@@ -34,6 +40,7 @@ struct Source {
   bool on_grid = false;    ///< every time is its tick times the period, to the last bit: a loop recorded it
   bool from_start = true;  ///< the first row of the file is among them
   std::vector<Gap> gaps;
+  std::optional<RecordedNoise> noise;  ///< before the forces were resampled, which hides it
 };
 
 /// Takes the rows out of a recording; `name` stands for it in messages.

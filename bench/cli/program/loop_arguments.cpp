@@ -38,6 +38,14 @@ void warn_of_device(const Scene& scene, const std::string& device) {
                    left_out.size() == 1 ? "does" : "do"));
 }
 
+/// A change that lies beyond the end never happens.
+void require_within(const LawChange& change, const std::string& text, double seconds) {
+  if (change.at_s < seconds) return;
+  throw std::invalid_argument(fmt::format(
+      "--switch '{}': it is at {:g} s of {:g} s, and never happens; a longer --seconds reaches it", text,
+      change.at_s, seconds));
+}
+
 void take_scene(const LoopArguments& arguments, RunOptions& options) {
   options.scene = read_scene(arguments.scene);
   if (!arguments.device.empty()) return warn_of_device(*options.scene, arguments.device);
@@ -82,7 +90,10 @@ RunOptions run_options(const LoopArguments& arguments) {
   if (!arguments.scene.empty()) take_scene(arguments, options);
   options.sensor_uri = drivers::sensor_beside(options.device_uri, options.sensor_uri);
   if (arguments.seconds) options.seconds = *arguments.seconds;
-  for (const std::string& change : arguments.changes) options.changes.push_back(parse_change(change));
+  for (const std::string& change : arguments.changes) {
+    options.changes.push_back(parse_change(change));
+    require_within(options.changes.back(), change, options.seconds);
+  }
   options.warn = warn;
   options.unprinted = unprinted_errors;
   options.progress = show_bar;

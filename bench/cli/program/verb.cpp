@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <stdexcept>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -122,6 +123,16 @@ Option Verb::add_uri(const std::string& name, std::string& variable, const std::
 
 Option Verb::add_flag(const std::string& name, bool& variable, const std::string& description) {
   return Option(*verb_.add_flag(name, variable, description));
+}
+
+RefuseIdle Verb::refuses_idle() const {
+  return [&verb = verb_](const std::vector<const char*>& options, const std::string& to,
+                         const std::string& why) {
+    for (const char* const option : options) {
+      if (verb.count(option) > 0)
+        throw std::invalid_argument(std::string(option) + " says nothing to " + to + "; " + why);
+    }
+  };
 }
 
 Verb& Verb::hidden() {

@@ -40,6 +40,11 @@ class Option {
   CLI::Option& option_;
 };
 
+/// Refuses options that were given though they say nothing to what is done; called by the verb's action.
+/// @throws std::invalid_argument in a line: "--depth says nothing to virtual walls; it is for a law".
+using RefuseIdle = std::function<void(const std::vector<const char*>& options, const std::string& to,
+                                      const std::string& why)>;
+
 /// A verb while its options are declared.
 class Verb {
  public:
@@ -56,6 +61,7 @@ class Verb {
   /// URI is put before the verb's action runs.
   Option add_uri(const std::string& name, std::string& variable, const std::string& description);
   Option add_flag(const std::string& name, bool& variable, const std::string& description);
+  [[nodiscard]] RefuseIdle refuses_idle() const;
   /// No help, page or completion tells of it: a program calls it.
   Verb& hidden();
   /// Adds --plugin: laws of shared objects, which are loaded before the verb's action runs.

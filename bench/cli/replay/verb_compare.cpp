@@ -1,5 +1,6 @@
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -36,6 +37,7 @@ struct CompareVerbArguments {
   double match_ms = 50.0;
   std::string output;
   bool force_output = false;
+  RefuseIdle refuse_idle;
 };
 
 /// @throws std::invalid_argument if options say of it too.
@@ -66,6 +68,8 @@ compare::Tolerance tolerance_of(const CompareVerbArguments& arguments) {
 }
 
 void run_compare(const CompareVerbArguments& arguments, Context& context) {
+  if (arguments.align != "lag")
+    arguments.refuse_idle({"--max-lag"}, "--align " + arguments.align, "it is for --align lag");
   RunComparisonOptions options{
       .align = {.by = compare::align_by(arguments.align), .most_lag_s = 1e-3 * arguments.most_lag_ms},
       .tolerance = tolerance_of(arguments),
@@ -76,6 +80,7 @@ void run_compare(const CompareVerbArguments& arguments, Context& context) {
   for_each_index(2, 2, [&](std::size_t i) {
     runs[i] = read_run(i == 0 ? arguments.expected : arguments.got, arguments.force);
   });
+  require_kinds_of(arguments.force, runs[0], runs[1]);
   bring_to_one_sense(runs[0], runs[1]);
   const RunComparison result = compare_runs(std::move(runs[0]), std::move(runs[1]), options);
   context.result = comparison_as_json(result, options);
@@ -103,6 +108,7 @@ void add_compare(CLI::App& app, Context& context) {
       "time [s],x [N],rx [N·m]. Exits with 1 if the second is not within the tolerance of the\n"
       "first. docs/comparing.md says more.",
       [arguments, &context] { run_compare(*arguments, context); });
+  arguments->refuse_idle = verb.refuses_idle();
   verb.add_option("EXPECTED", arguments->expected, "Recording or table that is taken to be right").required();
   verb.add_option("GOT", arguments->got, "Recording or table that is compared with it").required();
   verb.add_option("--align", arguments->align, "Which rows belong together: tick, time, position or lag")

@@ -1,4 +1,3 @@
-#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -43,14 +42,11 @@ void say_case(const RegressionOutcome& one, Context& context) {
     return;
   }
   if (one.left_out) return context.say(fmt::format("  {:24} left out", one.about.name));
-  const auto& worst = one.comparison.worst;
-  const std::string apart = worst ? fmt::format("{:.2g} {}", std::abs(worst->difference()),
-                                                one.stored.channels[worst->channel].unit)
-                                  : "none";
   const std::string cost =
       one.tick_cost ? fmt::format("tick cost {:.3g}", *one.tick_cost) : step_cost_in_words(one.got);
-  context.say(fmt::format("  {:24} {:6}  {:>6} ticks  worst difference {:10}  {}", one.about.name,
-                          one.passed() ? "passed" : "FAILED", one.comparison.got_rows, apart, cost));
+  context.say(fmt::format("  {:24} {:6}  {:>6} ticks  largest difference {:10}  {}", one.about.name,
+                          one.passed() ? "passed" : "FAILED", one.comparison.got_rows,
+                          largest_in_words(one.comparison), cost));
   if (!one.note.empty()) context.say(fmt::format("      {}", one.note));
   if (one.passed()) return;
   for (const std::string& message : one.messages) context.say(fmt::format("      {}", message));

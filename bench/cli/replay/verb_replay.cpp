@@ -1,4 +1,5 @@
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -19,6 +20,7 @@
 #include "recordings/whole_recording.h"
 #include "replay/replay.h"
 #include "replay/replay_files.h"
+#include "replay/replay_modes.h"
 #include "replay/source.h"
 #include "replay/table.h"
 #include "run/check.h"
@@ -46,31 +48,17 @@ struct ReplayVerbArguments {
   double window_ms = 5.0;
   double match_ms = 50.0;
   CouplingOptions coupling;
+  RefuseIdle refuse_idle;
 };
-
-/// An option that was given to a mode that has no use for it would otherwise be passed over in silence.
-void refuse_where(bool given, const char* option, const char* mode) {
-  if (given) throw std::invalid_argument(fmt::format("{} says nothing to {}", option, mode));
-}
 
 void check_mode(const ReplayVerbArguments& arguments) {
   const bool through = !arguments.through.empty();
   if (through != arguments.as.empty())
     throw std::invalid_argument("give one of --as table, --as path and --through LAW");
-  const bool table = arguments.as == "table";
-  const bool path = arguments.as == "path";
-  const char* mode = through ? "--through" : table ? "--as table" : "--as path";
-  const LoopArguments& loop = arguments.loop;
-  refuse_where(!path && arguments.path.loop, "--loop", mode);
-  refuse_where(table && arguments.path.speed != 1.0, "--speed", mode);
-  refuse_where(table && arguments.path.bridge, "--bridge", mode);
-  refuse_where(!through && arguments.open_loop.realtime, "--realtime", mode);
-  refuse_where(path && arguments.contact.given(), "--contact or --direction", mode);
-  refuse_where(!loop.changes.empty(), "--switch", mode);
-  refuse_where(through && (!loop.device.empty() || !loop.scene.empty() || loop.seconds), "a device", mode);
-  refuse_where(through && !arguments.record.empty(), "--record",
-               "--through, which writes to the folder of -o");
-  refuse_where(through && !arguments.axis.empty(), "--axis", mode);
+  refuse_options_of_others(through                   ? ReplayMode::through
+                           : arguments.as == "table" ? ReplayMode::table
+                                                     : ReplayMode::path,
+                           arguments.refuse_idle);
 }
 
 Source source_of(const ReplayVerbArguments& arguments) {
@@ -246,6 +234,7 @@ void add_replay(CLI::App& app, Context& context) {
       "forces with the recorded one; --as table renders the recorded forces themselves on a device;\n"
       "--as path pulls a device along the recorded positions. docs/replay.md says more.",
       [arguments, &context] { run_replay(*arguments, context); });
+  arguments->refuse_idle = verb.refuses_idle();
   verb.takes_laws(context);
   verb.add_option("RECORDING", arguments->recording, "Recording to play").required();
   verb.takes_texts(context, arguments->recording);

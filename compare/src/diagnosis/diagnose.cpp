@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 
 #include <fmt/core.h>
@@ -182,6 +183,18 @@ void find_in_each(const std::vector<ForcePair>& pairs, const Series& expected, c
   find_axes(pairs, found);
 }
 
+/// Rows that the times say are missing, and what else is other among those that both have.
+Diagnosis diagnosed_beside_gaps(const Series& expected, const Series& got, const Facts& facts,
+                                Findings missing, const MatchedRows& rows) {
+  Diagnosis result = diagnose(rows_of(expected, rows.expected), rows_of(got, rows.got), facts);
+  for (Findings* const findings : {&result.names, &result.guesses}) {
+    for (Finding& one : *findings) one.sentence = "besides, counted in rows that both have: " + one.sentence;
+  }
+  result.names.insert(result.names.begin(), std::make_move_iterator(missing.begin()),
+                      std::make_move_iterator(missing.end()));
+  return result;
+}
+
 }  // namespace
 
 std::string_view name_of(Change change) noexcept { return change_names[static_cast<std::size_t>(change)]; }
@@ -206,7 +219,14 @@ Diagnosis diagnose(const Series& expected, const Series& got, const Facts& facts
     }
     return {.names = std::move(found)};
   }
-  find_edits(finite.expected, finite.got, pairs, found);
+  Findings edits;
+  find_edits(finite.expected, finite.got, pairs, edits);
+  const auto explains = [](const Finding& one) { return one.remainder <= named_remainder; };
+  if (!edits.empty() && std::ranges::none_of(edits, explains)) {
+    const auto rows = matched_rows(finite.expected, finite.got);
+    if (rows && rows->by_time) return diagnosed_beside_gaps(expected, got, facts, std::move(edits), *rows);
+  }
+  found.insert(found.end(), edits.begin(), edits.end());
   if (expected.rows() == got.rows()) {
     find_in_each(pairs, finite.expected, finite.got, facts, found);
     return judged(std::move(found), pairs);
@@ -231,7 +251,7 @@ std::vector<std::string> sentences_of(const Diagnosis& diagnosis, const Series& 
     const bool again = std::ranges::count(said, one.channels) > 0;
     lines.push_back(channels_in_words(one.channels, expected) + (again ? "or " : "") +
                     with_names(one.sentence, expected));
-    said.push_back(one.channels);
+    if (one.remainder <= named_remainder) said.push_back(one.channels);
   }
   if (diagnosis.explained) return lines;
   std::string text = "unexplained";

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include "diagnosis/pair.h"
+#include "diagnosis/rows_by_time.h"
 
 namespace kerf::compare {
 namespace {
@@ -12,15 +13,6 @@ constexpr std::size_t most_edits = 200;
 constexpr std::size_t enough_rows = 4;  ///< that must be the same after an edit
 constexpr std::size_t most_other_rows = 5;
 constexpr std::size_t looked_ahead = 4000;  ///< rows by which candidates are told apart
-
-/// Rows that are missing in either run at one place.
-struct Edit {
-  std::size_t expected_row = 0;
-  std::size_t got_row = 0;
-  std::size_t lost = 0;
-  std::size_t added = 0;
-  std::size_t first = 0;  ///< the first expected row that may be meant: those between look the same
-};
 
 class RowMatching {
  public:
@@ -212,12 +204,30 @@ double left_in(const MatchedRows& rows, const Series& expected, const Series& go
   return all > 0.0 ? std::sqrt(left / all) : 0.0;
 }
 
+/// Where the forces are not alike the times tell of rows that are missing.
+void find_edits_by_time(const Series& expected, const Series& got, const std::vector<ForcePair>& pairs,
+                        Findings& found) {
+  if (expected.rows() == got.rows()) return;
+  const auto rows = matched_by_time(expected, got);
+  if (!rows) return;
+  std::vector<Edit> lost;
+  std::vector<Edit> inserted;
+  for (const Edit& one : edits_of(*rows)) (one.lost > 0 ? lost : inserted).push_back(one);
+  const Finding like{.channels = differing_channels(pairs),
+                     .remainder = left_in(*rows, expected, got, pairs)};
+  add_edits(lost, Change::lost, "missing", like, found);
+  add_edits(inserted, Change::inserted, "there that nobody expects", like, found);
+}
+
 }  // namespace
 
 void find_edits(const Series& expected, const Series& got, const std::vector<ForcePair>& pairs,
                 Findings& found) {
   RowMatching matching(expected, got);
-  if (!matching.run()) return;
+  if (!matching.run()) {
+    find_edits_by_time(expected, got, pairs, found);
+    return;
+  }
   std::vector<Edit> lost;
   std::vector<Edit> doubled;
   std::vector<Edit> inserted;
@@ -254,7 +264,8 @@ void find_edits(const Series& expected, const Series& got, const std::vector<For
 
 std::optional<MatchedRows> matched_rows(const Series& expected, const Series& got) {
   RowMatching matching(expected, got);
-  if (!matching.run() || matching.edits.empty()) return {};
+  if (!matching.run()) return matched_by_time(expected, got);
+  if (matching.edits.empty()) return {};
   return std::move(matching.matched);
 }
 

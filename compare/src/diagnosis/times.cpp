@@ -21,7 +21,7 @@ std::string ticks_in_words(double ticks) {
 void find_lag(const ForcePair& pair, Findings& found) {
   const auto most = static_cast<std::size_t>(std::max(8.0, most_lag_s / pair.period_s));
   const auto fit = fit_lag(pair.expected, pair.got, {.most_ticks = most});
-  if (!fit || std::abs(fit->ticks) < 1e-4) return;
+  if (!fit || fit->is_longer || std::abs(fit->ticks) < 1e-4) return;
   const auto margin = static_cast<std::size_t>(std::abs(fit->ticks)) + kernel_reach + 2;
   if (2 * margin >= pair.rows()) return;
   const double remainder =

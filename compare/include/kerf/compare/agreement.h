@@ -25,7 +25,7 @@ struct ChannelAgreement {
   double drift = 0.0;  ///< of a straight line through the difference, over the run
   double rms_difference = 0.0;
   double correlation = 0.0;         ///< -1 to 1; 0 where either does not change
-  std::optional<double> latency_s;  ///< none where no force changes or one is not finite
+  std::optional<double> latency_s;  ///< none where no force changes, one is not finite, or it is longer
   double latency_std_error_s = 0.0;
   std::vector<BandCoherence>
       coherence;  ///< octaves from 5 Hz on; where there are four windows of a second or more

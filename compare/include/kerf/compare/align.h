@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -35,15 +36,27 @@ struct AlignOptions {
   double most_lag_s = 0.5;  ///< that is looked for
 };
 
+/// A step of a clock over more than two and a half periods, where the other run has rows.
+struct TimeGap {
+  bool of_got = false;  ///< else of the expected run
+  double begin_s = 0.0;
+  double end_s = 0.0;
+  std::size_t rows = 0;  ///< of the other run, which are not compared
+};
+
 /// Two runs on the rows of the expected one, as far as both have them.
 struct Aligned {
   Series expected;
   Series got;
-  std::optional<Lag> lag;          ///< where it was estimated
-  std::vector<std::string> notes;  ///< what was left out
+  std::optional<Lag> lag;                 ///< where it was estimated
+  std::optional<double> no_lag_within_s;  ///< where it is longer than was looked for: none is taken out
+  std::vector<TimeGap> gaps;              ///< by time and lag
+  std::vector<std::string> notes;         ///< what was left out
 };
 
 /// Puts two runs beside each other. Channels must be the same, in the same order.
+///
+/// By time and lag: no straight line stands for a gap of either run; rows of the other in it are left out.
 ///
 /// By position: strokes of the axis that moves most, told apart by reversals of a fiftieth of its range or
 /// more, are paired in their order; within one the force of `got` is that at the position of `expected`, on
@@ -53,7 +66,7 @@ struct Aligned {
 [[nodiscard]] Aligned aligned(const Series& expected, const Series& got, const AlignOptions& options);
 
 /// The lag that the forces of all channels say together, weighted by how well each knows it. None where no
-/// force changes.
+/// force changes, or least is left at the longest that is looked for.
 [[nodiscard]] std::optional<Lag> lag_between_runs(const Series& expected, const Series& got,
                                                   double most_lag_s);
 

@@ -36,6 +36,7 @@ struct ChannelComparison {
   ChannelName channel;
   std::size_t outside = 0;          ///< ticks outside the tolerance
   double largest_difference = 0.0;  ///< of all finite ticks, also those within the tolerance
+  std::size_t largest_at = 0;       ///< its tick, the first of such
   double largest_jnds = 0.0;
   double largest_expected = 0.0;  ///< largest of the expected forces
   double largest_got = 0.0;
@@ -56,7 +57,7 @@ struct Comparison {
   std::size_t outside = 0;    ///< ticks with a channel outside the tolerance
   std::optional<std::size_t> first_outside;
   std::vector<ChannelComparison> channels;
-  std::optional<ForceDifference> worst;  ///< the farthest outside the tolerance, else the largest difference
+  std::optional<ForceDifference> worst;  ///< the farthest outside the tolerance, in JNDs; else the farthest
   std::vector<std::string> messages;     ///< why it did not pass, the gravest first
 };
 

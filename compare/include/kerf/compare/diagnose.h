@@ -70,7 +70,8 @@ struct Diagnosis {
 
 /// Says what changed between two runs, per channel and jointly. A change is named if what is left once it is
 /// taken away is less than `named_remainder`; where several are, all are named, since they are one signal: a
-/// gain, a unit and a parameter of a linear law. For a channel that none explains there are guesses.
+/// gain, a unit and a parameter of a linear law. For a channel that none explains there are guesses. Rows
+/// that the times say are missing are named whatever they leave, and then what changed in the others.
 /// Channels must be the same, in the same order. @throws std::invalid_argument if they are not.
 [[nodiscard]] Diagnosis diagnose(const Series& expected, const Series& got, const Facts& facts = {});
 
@@ -82,10 +83,11 @@ struct MatchedRows {
   std::vector<std::size_t> expected;
   std::vector<std::size_t> got;
   std::size_t edits = 0;  ///< places at which rows are missing or added
+  bool by_time = false;   ///< as the times say, where the forces do not
 };
 
-/// Finds them by the values themselves. None if the runs are not the same but for such rows, or nothing is
-/// missing.
+/// Finds them by the values themselves, and where those are not the same but for such rows by the times, if
+/// both runs have them and they step over what is missing. None if nothing is, or nothing tells of it.
 [[nodiscard]] std::optional<MatchedRows> matched_rows(const Series& expected, const Series& got);
 
 /// These rows of a series.

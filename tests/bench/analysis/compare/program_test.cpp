@@ -204,6 +204,10 @@ TEST_F(CompareProgram, RefusesWhatCannotBeCompared) {
   refused({a, a, "--measured"}, "it holds no measured force");
   test::write_text(at("torn.csv"), "time [ms],x [N]\n0,1\n1,2\n2,\n3,4\n");
   refused({at("torn.csv"), a}, "torn.csv:4: not a row of 2 numbers");
+  const std::string b = table("c.csv", "time [ms],x [mN],grip", 1000.0);
+  refused({a, b, "--case", "slow"}, "--case says nothing of tables and recordings; it is for a suite's");
+  refused({b, b, "--measured"}, "--measured says nothing of tables and stored forces; it is for recordings");
+  refused({a, b, "--max-lag", "3"}, "--max-lag says nothing to --align tick; it is for --align lag");
 }
 
 TEST_F(CompareProgram, ComparesWhatWasMeasuredWhereNothingWasCommanded) {

@@ -1,5 +1,6 @@
 #include "support/program.h"
 
+#include <random>
 #include <string>
 #include <vector>
 
@@ -138,6 +139,52 @@ TEST_F(ProgramReplay, TellsOfGaps) {
   const Outcome outcome = replay({path("gap.h5"), "--through", law, "--bridge", "--json"});
   EXPECT_THAT(outcome.errors, HasSubstr("bridged by straight lines"));
   EXPECT_EQ(json::parse(outcome.output).at("rows"), 2001);
+}
+
+TEST_F(ProgramReplay, RefusesOptionsOfOtherModes) {
+  const std::string file = sine();
+  const std::string law = examples + "kelvin.law.toml";
+  using Words = std::vector<std::string>;
+  const auto refused = [&](const Words& mode, const std::vector<Words>& options, const std::string& says) {
+    for (const Words& option : options) {
+      Words words{file};
+      words.insert(words.end(), mode.begin(), mode.end());
+      words.insert(words.end(), option.begin(), option.end());
+      expect_refusal(words, 2, option.front() + " says nothing to " + says);
+    }
+  };
+  const std::vector<Words> of_path{
+      {"--stiffness", "3"}, {"--damping", "1"}, {"--limit", "1"}, {"--approach", "0.2"}, {"--loop"}};
+  const std::vector<Words> of_device{{"--rate", "500"},       {"--ramp", "1"},
+                                     {"--passivity-control"}, {"--virtual"},
+                                     {"--sensor", "u6:0"},    {"--device-model", "x.device.toml"},
+                                     {"--seconds", "3"},      {"--device", "sim:scissors"},
+                                     {"--record", "x.h5"}};
+  const std::vector<Words> of_through{
+      {"--match", "3"}, {"--contact-force", "1"}, {"--drop-window", "9"}, {"--realtime"}};
+  refused({"--through", law}, of_path, "--through; it is for --as path");
+  refused({"--through", law}, of_device, "--through; ");
+  refused({"--as", "table"}, of_path, "--as table; it is for --as path");
+  refused({"--as", "table"}, of_through, "--as table; it is for --through");
+  refused({"--as", "path"}, of_through, "--as path; it is for --through");
+}
+
+// Every second row is half way between two of the recording, where its noise averages out.
+TEST_F(ProgramReplay, FindsNoDropsInNoiseAtHalfTheSpeed) {
+  schema::Recording noisy = test::sine_of_scissors(6001);
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> rough(0.0, 0.02);
+  for (double& force : noisy.force_measured) force += rough(random);
+  schema::write_recording(path("noisy.h5"), noisy);
+  for (const char* speed : {"1", "0.5", "0.7"}) {
+    const Outcome outcome =
+        replay({path("noisy.h5"), "--through", examples + "kelvin.law.toml", "--speed", speed, "--json"});
+    ASSERT_EQ(outcome.exit_status, 0) << outcome.errors;
+    EXPECT_EQ(
+        json::parse(outcome.output).at("laws").at(0).at("axes").at(0).at("events").at("drop").at("recorded"),
+        0)
+        << speed;
+  }
 }
 
 TEST_F(ProgramReplay, RefusesBadInputInOneLine) {
