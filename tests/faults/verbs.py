@@ -92,7 +92,7 @@ VERBS = [
     Verb("session simulate", "session simulate {examples}/sessions/abx.protocol.toml --subjects 2 -o power", ("power",), (), 1.0),
     Verb("check", "check {in}/kelvin.law.toml --device sim:scissors --seconds 0.1 -o c.json", ("c.json",), (), 0.5,
          judges_time=True),
-    Verb("check --record", "check {in}/kelvin.law.toml --device sim:scissors --virtual --seconds 0.5 --record c.h5", ("c.h5",), (),
+    Verb("check --record", "check {in}/kelvin.law.toml --device sim:scissors --virtual --seconds 1 --record c.h5", ("c.h5",), (),
          0.2),
     Verb("stability", "stability --cells 2 --seconds 0.1 --threads 1 -o wall", ("wall",)),
     Verb("choose", "choose {in}/short.h5 --no-loop --folds 2 --most-segments 1 -o choice", ("choice",), (), 0.4),

@@ -97,7 +97,7 @@ class Results(InFolder):
 
     def test_are_what_their_file_says(self):
         file = self.folder / "check.json"
-        run("check", EXAMPLES / "kelvin.law.toml", "--device", "sim:scissors", "--virtual", "--seconds", "0.2", "-o", file)
+        run("check", EXAMPLES / "kelvin.law.toml", "--device", "sim:scissors", "--virtual", "--seconds", "1", "-o", file)
         check = kerf.load(file)
         self.assertEqual((check, check.kind), (json.loads(file.read_text()), "check"))
 

@@ -94,10 +94,24 @@ std::vector<std::string> row_of(const ChartPoint& point) {
           stable_text(point.stability)};
 }
 
-const std::vector<std::string> head{"law",        "fidelity",      "parameters",    "p50 [us]",
-                                    "p99.9 [us]", "cold p50 [us]", "cold p99 [us]", "cold p99.9 [us]",
-                                    "cold ticks", "error [N]",     "error [JND]",   "outside [%]",
-                                    "worst [N]",  "axis",          "stable"};
+std::vector<std::string> head_of(const SpeedAccuracy& chart) {
+  const std::string& unit = chart.force_unit;
+  return {"law",
+          "fidelity",
+          "parameters",
+          "p50 [us]",
+          "p99.9 [us]",
+          "cold p50 [us]",
+          "cold p99 [us]",
+          "cold p99.9 [us]",
+          "cold ticks",
+          fmt::format("error [{}]", unit),
+          "error [JND]",
+          "outside [%]",
+          fmt::format("worst [{}]", unit),
+          "axis",
+          "stable"};
+}
 
 }  // namespace
 
@@ -108,14 +122,20 @@ json chart_as_json(const SpeedAccuracy& chart) {
               {"rate_hz", chart.rate_hz},
               {"jnd_n", json_number(chart.jnd_n)},
               {"jnd_fraction_limit", jnd_fraction_limit},
-              {"compared_in", chart.one_axis ? "N" : "JND"},
+              {"force_unit", chart.force_unit},
+              {"compared_in", chart.one_axis ? chart.force_unit : "JND"},
               {"cold_tail", tail_name(chart.cold_tail)},
               {"empty_cold_tick", to_json(chart.empty_tick)},
               {"points", json::array()},
               {"front", json::array()},
               {"cold_front", json::array()},
               {"notes", chart.notes}};
-  if (!chart.recording.empty()) result["recording"] = chart.recording;
+  if (!chart.recording.empty()) {
+    result["recording"] = chart.recording;
+    result.update(as_json(chart.of_recording));
+  }
+  if (chart.contact)
+    result["contact"] = {{"position", chart.contact->position}, {"direction", chart.contact->direction}};
   if (chart.cycles) {
     result["cycles"] = in_words(*chart.cycles);
     result["cycles_left_out"] = as_json(chart.cycles_left_out);
@@ -156,11 +176,11 @@ std::string chart_csv(const SpeedAccuracy& chart) {
   std::string csv =
       "law,fidelity,parameters,rate_hz,p50_ns,p999_ns,cold_p50_ns,cold_p99_ns,cold_p999_ns,cold_ticks,error_"
       "n,"
-      "error_jnd,jnd_fraction,worst_n,axis,stable,on_front,on_cold_front\n";
+      "error_jnd,jnd_fraction,worst_n,axis,stable,on_front,on_cold_front,force_unit\n";
   for (const ChartPoint& point : chart.points) {
     const Stable stable = point.stability.stable;
     csv += fmt::format(
-        "{},{},{},{:g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{},{:.6g},{:.6g},{:.4g},{:.6g},{},{},{},{}\n",
+        "{},{},{},{:g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{},{:.6g},{:.6g},{:.4g},{:.6g},{},{},{},{},{}\n",
         point.law, csv_quoted(point.fidelity), point.parameters, point.rate_hz, point.cost.p50_ns,
         point.cost.p999_ns, point.cost.cold.p50_ns, point.cost.cold.p99_ns, point.cost.cold.p999_ns,
         point.cost.cold.ticks, point.error_n, point.error_jnd, point.jnd_fraction, point.worst_n,
@@ -168,7 +188,7 @@ std::string chart_csv(const SpeedAccuracy& chart) {
         stable == Stable::not_judged ? name_of(stable)
         : stable == Stable::yes      ? "1"
                                      : "0",
-        point.on_front ? 1 : 0, point.on_cold_front ? 1 : 0);
+        point.on_front ? 1 : 0, point.on_cold_front ? 1 : 0, chart.force_unit);
   }
   return csv;
 }
@@ -206,12 +226,12 @@ void write_chart(const SpeedAccuracy& chart, const std::filesystem::path& folder
 
 std::string chart_page(const SpeedAccuracy& chart) {
   std::string body = fmt::format("<h1>Speed against accuracy: {}</h1>\n", escaped(chart.source));
-  body += fmt::format("<p class=\"soft\">Errors towards {}. A tick is {:.4g} us; the JND is {:.3g} N.</p>\n",
-                      escaped(chart.reference), 1e6 / chart.rate_hz, chart.jnd_n);
+  body += fmt::format("<p class=\"soft\">Errors towards {}. A tick is {:.4g} us; the JND is {:.3g} {}.</p>\n",
+                      escaped(chart.reference), 1e6 / chart.rate_hz, chart.jnd_n, escaped(chart.force_unit));
   if (!chart.convergence.refinements.empty())
     body += "<p class=\"soft\">" + escaped(convergence_in_words(chart.convergence)) + "</p>\n";
   body += html_figure(draw(chart_picture(chart_as_json(chart)))) + "<h2>The front</h2>\n";
-  std::vector<std::vector<std::string>> rows{head};
+  std::vector<std::vector<std::string>> rows{head_of(chart)};
   const auto front = front_of(chart);
   for (const ChartPoint* point : front) rows.push_back(row_of(*point));
   body += html_table(rows);
@@ -226,8 +246,9 @@ std::string chart_page(const SpeedAccuracy& chart) {
   body +=
       enough == front.end()
           ? std::string("<p class=\"answer bad\">No stable point is within the JND.</p>\n")
-          : fmt::format("<p class=\"answer\">The cheapest within the JND: {}, {} us, {:.3g} N{}.</p>\n",
+          : fmt::format("<p class=\"answer\">The cheapest within the JND: {}, {} us, {:.3g} {}{}.</p>\n",
                         escaped(point_name(**enough)), cost_text((*enough)->cost.p50_ns), (*enough)->error_n,
+                        escaped(chart.force_unit),
                         (*enough)->stability.stable == Stable::yes ? "" : "; its stability was not judged");
   body +=
       "<p class=\"soft\">Costs are percentiles of single ticks, with warm caches and with caches that were "

@@ -13,7 +13,7 @@ namespace kerf::bench {
 /// Everything about a chart, one object a point. Each names the file of its law that write_chart() writes.
 [[nodiscard]] nlohmann::ordered_json chart_as_json(const SpeedAccuracy& chart);
 
-/// One row a point, its units in the head.
+/// One row a point, its units in the head; of what ends in "_n" the last column says which.
 [[nodiscard]] std::string chart_csv(const SpeedAccuracy& chart);
 
 /// One self-contained page: the picture, the front, every point, and what was left out.

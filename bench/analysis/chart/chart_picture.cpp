@@ -51,18 +51,18 @@ std::string text_or_empty(const json& chart, const char* name) {
   return found != chart.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
-/// A chart's points, errors in N where one axis is judged, else in JNDs.
+/// A chart's points, errors in the unit of the force where one axis is judged, else in JNDs.
 struct Spots {
   explicit Spots(const json& chart)
       : unit(chart.at("compared_in").get<std::string>()),
-        jnd(unit == "N" ? number_from(chart.at("jnd_n")) : 1.0),
+        jnd(unit == "JND" ? 1.0 : number_from(chart.at("jnd_n"))),
         tick_us(1e6 / chart.at("rate_hz").get<double>()),
         cold_tail(text_or_empty(chart, "cold_tail")),
         limit(chart.value("jnd_fraction_limit", 1.0)) {
     const std::string cold_key = cold_tail == "p99" ? "cold_p99_ns" : "cold_p999_ns";
     const double most = most_jnds * jnd;
     for (const json& point : chart.at("points")) {
-      const double error = number_from(point.at(unit == "N" ? "error_n" : "error_jnd"));
+      const double error = number_from(point.at(unit == "JND" ? "error_jnd" : "error_n"));
       const double p50_ns = number_from(point.at("p50_ns"));
       const double cost_us = std::max(1e-3 * p50_ns, cheapest_us);
       const auto law = point.at("law").get<std::string>();

@@ -46,7 +46,7 @@ std::size_t most_segments(const std::vector<FitPlan>& plans) {
   return static_cast<std::size_t>(most);
 }
 
-/// Root mean square and largest difference of two series of forces [N].
+/// Root mean square and largest difference of two series of forces, in their unit.
 struct Difference {
   double rms_n = 0.0;
   double largest_n = 0.0;
@@ -93,7 +93,10 @@ class RecordingChart {
   SpeedAccuracy run() {
     chart_.source = source_.name;
     chart_.recording = source_.recording->header.uuid;
+    chart_.of_recording = kept_state(*source_.recording, source_.axis);
+    chart_.contact = source_.contact;
     chart_.rate_hz = options_.rate_hz;
+    chart_.force_unit = source_.recording->axes[source_.axis].force_unit;
     chart_.reference = options_.folds > 0
                            ? "held-out cycles, or blocks of time where there are none, as rendered"
                            : "the recording itself, with nothing held out, as rendered";
@@ -188,8 +191,8 @@ class RecordingChart {
       finite = finite && std::isfinite(f);
     }
     if (!finite || !(largest <= runaway * peak_n_)) {
-      point.stability =
-          not_stable(fmt::format("its force reaches {:.3g} N, the recording {:.3g} N", largest, peak_n_));
+      point.stability = not_stable(fmt::format("its force reaches {:.3g} {unit}, the recording {:.3g} {unit}",
+                                               largest, peak_n_, fmt::arg("unit", chart_.force_unit)));
     } else {
       judge_stability(point, options_);
     }

@@ -16,6 +16,7 @@
 #include "fits/fit_recording.h"
 #include "laws/law_file.h"
 #include "scene/scene.h"
+#include "segment/result_state.h"
 #include "stability/stability_verdict.h"
 
 namespace kerf::bench {
@@ -30,9 +31,9 @@ struct ChartPoint {
   std::size_t parameters = 0;
   double rate_hz = 0.0;  ///< of the loop that renders it
   TickCost cost;
-  double error_n = 0.0;    ///< root mean square, on the axis that is worst in JNDs [N]
+  double error_n = 0.0;    ///< root mean square, on the axis that is worst in JNDs [the chart's unit]
   double error_jnd = 0.0;  ///< the same in JNDs
-  double worst_n = 0.0;    ///< the largest, on that axis [N]
+  double worst_n = 0.0;    ///< the largest, on that axis, likewise
   /// Share of ticks in contact whose error a person could feel, by the JND of the force of then; on the axis
   /// with the largest share. NaN: nobody looked.
   double jnd_fraction = std::numeric_limits<double>::quiet_NaN();
@@ -52,13 +53,16 @@ inline constexpr double jnd_fraction_limit = 0.05;
 
 /// Cost against error, for all laws and fidelities.
 struct SpeedAccuracy {
-  std::string source;         ///< name of the recording or scene
-  std::string recording{};    ///< its uuid; empty for a scene
-  std::string reference;      ///< in words, what errors are towards
+  std::string source;                        ///< name of the recording or scene
+  std::string recording{};                   ///< its uuid; empty for a scene
+  KeptState of_recording{};                  ///< of which state; a scene has none
+  std::optional<models::Contact> contact{};  ///< of a recording
+  std::string reference;                     ///< in words, what errors are towards
   Convergence convergence{};  ///< of the reference, where it is a finer mesh; no refinements else
   double rate_hz = 0.0;
-  double jnd_n = 0.0;    ///< of the axis, or of the worst axis of the cheapest point where there are several
-  bool one_axis = true;  ///< errors in N are comparable; else only those in JNDs
+  double jnd_n = 0.0;  ///< of the axis, or of the worst axis of the cheapest point where there are several
+  std::string force_unit{"N"};  ///< of errors and JND: the axis' own; of a scene forces at the hand
+  bool one_axis = true;         ///< errors in that unit are comparable; else only those in JNDs
   std::vector<ChartPoint> points;
   ColdTail cold_tail = ColdTail::none;
   ColdCost empty_tick;  ///< what the machine itself adds to a cold tick; no ticks if nobody looked

@@ -17,6 +17,7 @@
 #include "chart/cost/tick_cost.h"
 #include "chart/cost/timed_stretch.h"
 #include "fits/fit_series.h"
+#include "fits/row_doubts.h"
 #include "recordings/axis_series.h"
 #include "threads/for_each_index.h"
 
@@ -102,7 +103,9 @@ class LawSelection {
   /// Marks the rows that count; returns how many cycles do.
   std::size_t count_rows(AxisSeries& series) {
     const double felt = options_.fit.jnd.threshold;
-    const CountedRows counted = mark_counted(series, recording_, options_.axis, options_.rows, felt);
+    const FitSource source{
+        .recording = &recording_, .name = "", .axis = options_.axis, .contact = choice_.contact};
+    const CountedRows counted = mark_rows(source, options_.rows, felt, series);  // as each fit does
     rows_ = {.rows = options_.rows.rows,
              .cycles = counted.none_is_good ? CycleChoice{.by = CycleChoice::By::all}
                                             : settled(options_.rows.cycles, recording_, options_.axis, felt)};
@@ -179,7 +182,11 @@ class LawSelection {
     candidate.fitted_n = result.cv_rmse;
     candidate.error_jnd = candidate.error_n / choice_.jnd_n;
     if (result.converged && !result.can_be_chosen())
-      candidate.why = fmt::format("it fits worse than the mean of the force does (R2 {:.2g})", result.r2);
+      candidate.why =
+          result.is_felt_in_free_air()
+              ? fmt::format("it is felt where the tool is free, in {:.0f} % of the rows without a force",
+                            100.0 * result.free_fraction)
+              : fmt::format("it fits worse than the mean of the force does (R2 {:.2g})", result.r2);
     candidate.within_jnd = result.can_be_chosen() && candidate.error_n <= choice_.jnd_n;
   }
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "choose/choice_files.h"
+#include "segment/result_state.h"
 
 namespace kerf::bench {
 namespace {
@@ -57,9 +58,9 @@ DeviceChoice choose_on_device(const schema::Recording& recording, const std::fil
   json about{{"name", file.stem().string()},
              {"recording", file.string()},
              {"uuid", recording.header.uuid},
-             {"axis", recording.axes[how.axis].name},
              {"device", checks ? json(checks->device_uri()) : json(nullptr)},
              {"device_model", checks ? as_json(checks->model()) : json(nullptr)}};
+  about.update(as_json(kept_state(recording, how.axis)));
   about.update(choice_as_json(choice));
   return {.choice = std::move(choice), .json = std::move(about)};
 }

@@ -140,6 +140,7 @@ json law_as_json(const FittedLaw& law, const RecordingFit& all) {
               {"test_rmse", json_number(fit.test_rmse)},
               {"test_rmse_rendered", json_number(fit.rendered.test_rmse)},
               {"jnd_fraction", fit.jnd_fraction},
+              {"free_fraction", fit.free_fraction},
               {"correlation_time_samples", fit.correlation_time},
               {"covariance_by", name_of(fit.covariance_by)},
               {"correlation", correlation_as_json(fit)},

@@ -191,10 +191,11 @@ std::vector<Gap> gaps_of(const AxisSeries& series, double felt) {
   for (std::size_t i = 1; i < series.time_s.size(); ++i) {
     const double gap_s = series.time_s[i] - series.time_s[i - 1];
     if (!(gap_s > std::max(least_s, periods * period_s))) continue;
-    std::size_t end = i;
+    const std::size_t begin = std::max(i, gaps.empty() ? 0 : gaps.back().blind.end);
+    std::size_t end = begin;
     while (end < series.force.size() && series.penetration[end] > 0.0 && std::abs(series.force[end]) > felt)
       ++end;
-    gaps.push_back({.before = i - 1, .seconds = gap_s, .blind = {.begin = i, .end = end}});
+    gaps.push_back({.before = i - 1, .seconds = gap_s, .blind = {.begin = begin, .end = end}});
   }
   return gaps;
 }

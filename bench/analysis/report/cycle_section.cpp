@@ -139,10 +139,21 @@ std::string who_said_so(const std::optional<schema::CycleFlags>& stored, const s
                              stored->created, stored->software, stored->felt, force_unit));
 }
 
+CycleCount count_of(const std::vector<CycleRemarks>& cycles) {
+  return {.good = static_cast<std::size_t>(std::ranges::count_if(cycles, &CycleRemarks::good)),
+          .all = cycles.size()};
+}
+
+bool has_cycles(const schema::RecordedRows& rows, std::size_t axis) {
+  const auto& cycles = rows.about().cycles;
+  return cycles && cycles->axis == axis && !cycles->phases.empty() &&
+         rows.width(schema::Column::force_measured) + rows.width(schema::Column::force_commanded) > 0;
+}
+
 std::string section_of_cycles(const schema::RecordedRows& rows, std::size_t axis) {
   const schema::Recording& about = rows.about();
   const std::vector<CycleRemarks> cycles = remarks_on_cycles(rows, axis);
-  const auto good = static_cast<std::size_t>(std::ranges::count_if(cycles, &CycleRemarks::good));
+  const std::size_t good = count_of(cycles).good;
   const std::string& force_unit = about.axes[axis].force_unit;
   std::string html = fmt::format("<p>{} of {} cycles count: laws are fitted to and judged by them.</p>\n",
                                  good, cycles.size());
@@ -153,11 +164,17 @@ std::string section_of_cycles(const schema::RecordedRows& rows, std::size_t axis
 
 }  // namespace
 
+std::optional<CycleCount> count_cycles(const schema::RecordedRows& rows, std::size_t axis) {
+  if (!has_cycles(rows, axis)) return std::nullopt;
+  try {
+    return count_of(remarks_on_cycles(rows, axis));
+  } catch (const schema::FormatError&) {
+    return std::nullopt;
+  }
+}
+
 std::string cycle_section(const schema::RecordedRows& rows, std::size_t axis) {
-  const schema::Recording& about = rows.about();
-  if (!about.cycles || about.cycles->axis != axis || about.cycles->phases.empty() ||
-      rows.width(schema::Column::force_measured) + rows.width(schema::Column::force_commanded) == 0)
-    return "";
+  if (!has_cycles(rows, axis)) return "";
   const std::string heading = "<h2>Cycles</h2>\n";
   try {
     return heading + section_of_cycles(rows, axis);

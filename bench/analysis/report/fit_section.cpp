@@ -181,12 +181,12 @@ std::string blame_of(const json& fits, const std::string& model) {
 
 }  // namespace
 
-std::string choice_paragraph(const json& fits) {
+std::string choice_paragraph(const json& fits, bool outdated) {
   try {
     const std::string model = fits.at("choice").at("model").get<std::string>();
-    const Answer answer = model.empty()                             ? Answer::bad
-                          : choice_within_jnd(fits).value_or(false) ? Answer::good
-                                                                    : Answer::partly;
+    const Answer answer = model.empty()                                          ? Answer::bad
+                          : !outdated && choice_within_jnd(fits).value_or(false) ? Answer::good
+                                                                                 : Answer::partly;
     return html_answer(
         answer, fmt::format("<strong>Choice: {}</strong>: {}.{}", escaped(model.empty() ? "none" : model),
                             escaped(fits.at("choice").at("why").get<std::string>()), blame_of(fits, model)));

@@ -10,8 +10,8 @@
 
 namespace kerf::bench {
 
-/// Which law was chosen and why, for the top of the page.
-[[nodiscard]] std::string choice_paragraph(const nlohmann::ordered_json& fits);
+/// Which law was chosen and why, for the top of the page; not good if the fit is `outdated`.
+[[nodiscard]] std::string choice_paragraph(const nlohmann::ordered_json& fits, bool outdated = false);
 
 /// The laws compared, drawn over the data, their residuals and parameters. `fits` is the JSON of `kerf fit`,
 /// whose law files are in `folder`. @throws std::invalid_argument if the JSON lacks what `kerf fit` writes.

@@ -10,6 +10,7 @@
 
 #include "html/html.h"
 #include "plot/plot.h"
+#include "run/check.h"
 
 namespace kerf::bench {
 namespace {
@@ -105,10 +106,12 @@ std::string intervention_table(const json& check) {
 std::string verdict_paragraph(const json& check) {
   try {
     const bool passed = check.at("verdict") == "pass";
+    const bool known = check.at("verdict") != not_felt;
     const bool passive = check.at("passive").get<bool>();
     std::string text =
         fmt::format("<strong>Closed loop: {}.</strong> {} ticks at {:.0f} Hz",
-                    !passed   ? "FAIL"
+                    !known    ? "not known"
+                    : !passed ? "FAIL"
                     : passive ? "pass"
                               : "in time, but not passive",
                     check.at("ticks").get<std::uint64_t>(), 1.0 / check.at("period_s").get<double>());
@@ -122,7 +125,10 @@ std::string verdict_paragraph(const json& check) {
     if (!says_missed) text += fmt::format(", {} missed", check.at("missed").get<std::uint64_t>());
     text += reasons;
     text += '.';
-    return html_answer(!passed ? Answer::bad : passive ? Answer::good : Answer::partly, text);
+    return html_answer(known && !passed   ? Answer::bad
+                       : known && passive ? Answer::good
+                                          : Answer::partly,
+                       text);
   } catch (const json::exception& error) {
     refuse(error);
   }

@@ -22,6 +22,7 @@
 #include "report/loop_section.h"
 #include "report/results/found_results.h"
 #include "report/results/sections.h"
+#include "report/results/states.h"
 #include "report/results/summary.h"
 
 namespace kerf::bench {
@@ -97,12 +98,12 @@ void name_beside(const std::filesystem::path& recording, FoundResult& result) {
 }
 
 /// Those that were named as fits and check, and those that were found.
-std::vector<FoundResult> results_of(const ReportInput& input, const std::string& uuid) {
+std::vector<FoundResult> results_of(const ReportInput& input, const schema::RecordedRows& rows) {
   std::vector<std::filesystem::path> paths;
   if (input.fits) paths.push_back(*input.fits / "fit.json");
   if (input.check) paths.push_back(*input.check);
   paths.insert(paths.end(), input.results.begin(), input.results.end());
-  std::vector<FoundResult> results = find_results(paths, uuid);
+  std::vector<FoundResult> results = find_results(paths, rows.about().header.uuid);
   const auto same = [](const FoundResult& a, const FoundResult& b) {
     std::error_code absent;
     return std::filesystem::equivalent(a.file, b.file, absent);
@@ -114,15 +115,19 @@ std::vector<FoundResult> results_of(const ReportInput& input, const std::string&
                   results.end());
   }
   for (FoundResult& result : results) name_beside(input.recording, result);
+  tell_states(results, rows);
   return results;
 }
 
-std::string summary_of_results(const std::vector<FoundResult>& results) {
+std::string summary_of_results(const std::vector<FoundResult>& results, const schema::RecordedRows& rows,
+                               std::size_t axis) {
   for (const FoundResult& result : results)
     (void)read_with_care(result, [&] { return summary_of(result).text; });
-  std::string html = summary_paragraph(results);
+  std::string html = summary_paragraph(results, count_cycles(rows, axis));
+  if (const std::string contacts = contacts_apart(results, rows.about(), axis); !contacts.empty())
+    html += "<p>" + escaped(contacts) + ".</p>\n";
   for (const FoundResult& result : results) {
-    if (result.kind == ResultKind::fits) html += choice_paragraph(result.json);
+    if (result.kind == ResultKind::fits) html += choice_paragraph(result.json, is_outdated(result.state));
     if (result.kind == ResultKind::check) html += verdict_paragraph(result.json);
   }
   return html;
@@ -181,8 +186,8 @@ std::string report_page(const ReportInput& input) {
   const std::string name = input.recording.stem().string();
   std::string body = fmt::format("<h1>{}</h1>\n<p class=\"soft\">Report of {}, axis {}</p>\n", escaped(name),
                                  escaped(recording.header.software), escaped(recording.axes[axis].name));
-  const std::vector<FoundResult> results = results_of(input, recording.header.uuid);
-  body += summary_of_results(results);
+  const std::vector<FoundResult> results = results_of(input, rows);
+  body += summary_of_results(results, rows, axis);
   body += recording_section(rows, input.recording, axis) + cycle_section(rows, axis);
   for (const FoundResult& result : results) body += section_of(result, input.recording, axis);
   body += without_fits_or_check(results) + missing_section(results, input.recording.filename().string());

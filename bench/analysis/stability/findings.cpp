@@ -18,7 +18,8 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-std::string text_of(const Limit& limit, double factor, const char* unit) {
+std::string text_of(const Limit& limit, const ShownIn& in) {
+  const auto& [factor, unit] = in;
   if (limit.at) return fmt::format("{:.4g} {}", factor * *limit.at, unit);
   if (limit.holds_nowhere)
     return fmt::format("none, it fails at {:.4g} {} already", factor * limit.first, unit);
@@ -30,37 +31,40 @@ const char* how_it_ended(const Limit& limit) {
   return limit.at ? "found" : limit.holds_nowhere ? "holds nowhere" : "holds throughout";
 }
 
-std::string device_table(const SampledDevice& device) {
-  const auto row = [](const char* what, double value, const char* unit) {
+std::string device_table(const SampledDevice& device, const TravelUnits& units) {
+  const auto row = [](const char* what, double value, const std::string& unit) {
     return std::vector<std::string>{what, fmt::format("{:.6g}", value), unit};
   };
   return html_table({{"device", "value", "unit"},
-                     row("mass", device.mass_kg, "kg"),
-                     row("viscous friction b", device.viscous_n_s_per_m, "N·s/m"),
-                     row("Coulomb friction", device.coulomb_n, "N"),
-                     row("encoder step", 1e6 * device.encoder_step_m, "um"),
+                     row("mass", device.mass_kg, units.mass()),
+                     row("viscous friction b", device.viscous_n_s_per_m, units.damping()),
+                     row("Coulomb friction", device.coulomb_n, units.force()),
+                     row("encoder step", units.step().factor * device.encoder_step_m, units.step().unit),
                      row("sampling rate", 1.0 / device.period_s, "Hz"),
                      row("delay", 1e3 * device.delay_s, "ms"),
                      row("corner of the velocity filter (0: none)", device.velocity_corner_rad_s, "rad/s"),
-                     row("mass of the hand", device.hand.mass_kg, "kg"),
-                     row("damping of the hand", device.hand.damping_n_s_per_m, "N·s/m"),
-                     row("stiffness of the hand", device.hand.stiffness_n_per_m, "N/m")});
+                     row("mass of the hand", device.hand.mass_kg, units.mass()),
+                     row("damping of the hand", device.hand.damping_n_s_per_m, units.damping()),
+                     row("stiffness of the hand", device.hand.stiffness_n_per_m, units.stiffness())});
 }
 
-std::string stiffness_text(double stiffness, const std::vector<double>& tried) {
-  if (stiffness <= tried.front()) return fmt::format("at no stiffness from {:.4g} N/m on", tried.front());
-  if (stiffness >= tried.back()) return fmt::format("to {:.4g} N/m, all that was tried", tried.back());
-  return fmt::format("to {:.4g} N/m", stiffness);
+std::string stiffness_text(double stiffness, const std::vector<double>& tried, const std::string& unit) {
+  if (stiffness <= tried.front())
+    return fmt::format("at no stiffness from {:.4g} {} on", tried.front(), unit);
+  if (stiffness >= tried.back()) return fmt::format("to {:.4g} {}, all that was tried", tried.back(), unit);
+  return fmt::format("to {:.4g} {}", stiffness, unit);
 }
 
-std::string of_the_least_damping(const WallMap& map) {
+std::string of_the_least_damping(const WallMap& map, const TravelUnits& units) {
+  const std::string unit = units.stiffness();
   const WallBoundary& at = map.boundaries.front();
   const bool undamped = at.damping_n_s_per_m == 0.0;
   return fmt::format(
-      "{}: stable {}, passive to {:.4g} N/m (Colgate and Schenkel {:.4g}{}); passivity must hold in "
+      "{}: stable {}, passive to {:.4g} {} (Colgate and Schenkel {:.4g}{}); passivity must hold in "
       "any hand, stability in the one that was given",
-      undamped ? "without damping" : fmt::format("at a damping of {:.4g} N·s/m", at.damping_n_s_per_m),
-      stiffness_text(at.eigenvalues, map.grid.first), at.passive, at.colgate_schenkel,
+      undamped ? "without damping"
+               : fmt::format("at a damping of {:.4g} {}", at.damping_n_s_per_m, units.damping()),
+      stiffness_text(at.eigenvalues, map.grid.first, unit), at.passive, unit, at.colgate_schenkel,
       undamped ? fmt::format(", Abbott and Okamura {:.4g}", map.abbott_okamura) : "");
 }
 
@@ -78,7 +82,7 @@ std::string beside_the_eigenvalues(const WallMap& map) {
 }
 
 /// In words what the lines say of each other.
-std::vector<std::string> comparison(const WallMap& map) {
+std::vector<std::string> comparison(const WallMap& map, const TravelUnits& units) {
   std::vector<std::string> lines;
   if (!map.cells.empty()) {
     lines.push_back(fmt::format("{:.2f} % of {} cells: the wall as it was tried and the eigenvalues agree",
@@ -101,7 +105,7 @@ std::vector<std::string> comparison(const WallMap& map) {
                     "eigenvalues: {}",
                     least, most, why));
   }
-  lines.push_back(of_the_least_damping(map));
+  lines.push_back(of_the_least_damping(map, units));
   for (std::string& line : in_words(wall_conditions)) lines.push_back(std::move(line));
   return lines;
 }
@@ -111,6 +115,18 @@ std::string way_text(const WayRequest& way) {
   for (const std::string& share : way.along) text += (text.empty() ? " along " : ", ") + share;
   for (std::size_t i = 0; i < way.from.size(); ++i) text += (i == 0 ? " from " : ", ") + way.from[i];
   return text;
+}
+
+/// Of a law that pushes nowhere along the strokes, which therefore gain nothing.
+std::string never_met(const LawStudy& study, const StudiedAxis& on) {
+  const ShownIn depth = on.units.depth();
+  return fmt::format(
+      "{}{}: never met, its force is zero to {:.4g} {} and at {:.3g} {}; whether it is passive is not known: "
+      "{}",
+      study.model, way_text(on.way), depth.factor * study.range.depth_m, depth.unit, study.range.speed_m_s,
+      on.units.speed(),
+      on.way.along.empty() ? "a greater --depth may meet it"
+                           : "another --from, --along or a greater --depth may meet it");
 }
 
 /// The axis that was studied, and what it can do by itself.
@@ -180,8 +196,10 @@ Findings findings_of(const WallMap& map, const StudiedAxis& on) {
     }
   }
   json boundaries = json::array();
-  std::vector<std::vector<std::string>> table{{"B [N·s/m]", "simulated, as it is [N/m]", "simulated, linear",
-                                               "eigenvalues", "passive", "Colgate and Schenkel"}};
+  std::vector<std::vector<std::string>> table{{fmt::format("B [{}]", on.units.damping()),
+                                               fmt::format("simulated, as it is [{}]", on.units.stiffness()),
+                                               "simulated, linear", "eigenvalues", "passive",
+                                               "Colgate and Schenkel"}};
   const std::size_t every = std::max<std::size_t>(1, map.boundaries.size() / 10);
   for (const WallBoundary& at : map.boundaries) {
     boundaries.push_back({{"B", at.damping_n_s_per_m},
@@ -200,6 +218,7 @@ Findings findings_of(const WallMap& map, const StudiedAxis& on) {
   }
   found.json = {{"study", "wall"},
                 {"on", as_json(on, map.device)},
+                {"units", as_json(on.units)},
                 {"device", as_json(map.device)},
                 {"push_n", map.trial.push_n},
                 {"seconds", map.trial.seconds},
@@ -209,10 +228,10 @@ Findings findings_of(const WallMap& map, const StudiedAxis& on) {
                 {"conditions", to_json(wall_conditions)},
                 {"boundaries", std::move(boundaries)},
                 {"cells", std::move(cells)}};
-  found.lines = comparison(map);
+  found.lines = comparison(map, on.units);
   found.json["in_words"] = found.lines;
-  found.figures.push_back({"wall", picture_of(map)});
-  found.html = device_table(map.device) + "<h2>Boundaries</h2>\n" + html_table(table);
+  found.figures.push_back({"wall", picture_of(map, on.units)});
+  found.html = device_table(map.device, on.units) + "<h2>Boundaries</h2>\n" + html_table(table);
   return found;
 }
 
@@ -233,9 +252,11 @@ Findings findings_of(const LawStudy& study, const StudiedAxis& on) {
   found.json = {{"study", "law"},
                 {"law", study.model},
                 {"on", as_json(on, study.device)},
+                {"units", as_json(on.units)},
                 {"device", as_json(study.device)},
                 {"range", {{"depth_m", study.range.depth_m}, {"speed_m_s", study.range.speed_m_s}}},
-                {"passive", study.passive},
+                {"met", study.met},
+                {"passive", study.met ? json(study.passive) : json(nullptr)},
                 {"deepest_m", json_number(limits.depth_m.at)},
                 {"deepest_by_local_stiffness_m", json_number(limits.local_depth_m.at)},
                 {"steepest_approach_m_s", json_number(limits.speed_m_s.at)},
@@ -262,15 +283,18 @@ Findings findings_of(const LawStudy& study, const StudiedAxis& on) {
   found.json["agreement"] = study.map.agreement();
   found.json["cells"] = std::move(cells);
 
+  const ShownIn depth = on.units.depth();
+  const std::string speed = on.units.speed();
   found.lines = {
-      fmt::format("{}{}: {} to {:.4g} mm and {:.3g} m/s at {:.0f} Hz", study.model, way_text(on.way),
+      fmt::format("{}{}: {} to {:.4g} {} and {:.3g} {} at {:.0f} Hz", study.model, way_text(on.way),
                   study.passive ? "passive by all strokes that were tried" : "NOT passive",
-                  1e3 * study.range.depth_m, study.range.speed_m_s, 1.0 / study.device.period_s),
-      fmt::format("deepest passive penetration: {}; by its local stiffness, against {:.4g} N/m: {}",
-                  text_of(limits.depth_m, 1e3, "mm"), limits.passive_stiffness_n_per_m,
-                  text_of(limits.local_depth_m, 1e3, "mm")),
-      fmt::format("steepest passive approach: {}", text_of(limits.speed_m_s, 1.0, "m/s")),
-      fmt::format("lowest passive rate: {}", text_of(limits.rate_hz, 1.0, "Hz")),
+                  depth.factor * study.range.depth_m, depth.unit, study.range.speed_m_s, speed,
+                  1.0 / study.device.period_s),
+      fmt::format("deepest passive penetration: {}; by its local stiffness, against {:.4g} {}: {}",
+                  text_of(limits.depth_m, depth), limits.passive_stiffness_n_per_m, on.units.stiffness(),
+                  text_of(limits.local_depth_m, depth)),
+      fmt::format("steepest passive approach: {}", text_of(limits.speed_m_s, {1.0, speed})),
+      fmt::format("lowest passive rate: {}", text_of(limits.rate_hz, {1.0, "Hz"})),
       fmt::format("strokes and local stiffness agree in {:.1f} % of {} cells", 100.0 * study.map.agreement(),
                   study.map.cells.size())};
   if (!limits.passive_at_all) {
@@ -279,23 +303,26 @@ Findings findings_of(const LawStudy& study, const StudiedAxis& on) {
   }
   if (study.worst) {
     const Gain& worst = *study.worst;
-    found.lines.push_back(
-        fmt::format("the worst stroke: {:.3g} to {:.3g} mm in {} ticks ({:.3g} m/s) gains {:.2g} uJ",
-                    1e3 * worst.stroke.from_m, 1e3 * worst.stroke.to_m, worst.stroke.ticks,
-                    worst.stroke.speed_m_s(study.device.period_s), 1e6 * worst.energy_j));
+    const ShownIn energy = on.units.energy();
+    found.lines.push_back(fmt::format(
+        "the worst stroke: {:.3g} to {:.3g} {} in {} ticks ({:.3g} {}) gains {:.2g} {}",
+        depth.factor * worst.stroke.from_m, depth.factor * worst.stroke.to_m, depth.unit, worst.stroke.ticks,
+        worst.stroke.speed_m_s(study.device.period_s), speed, energy.factor * worst.energy_j, energy.unit));
   }
   if (study.pressed) {
-    found.lines.push_back(fmt::format(
-        "pressed by the hand and held: {}, ripple of the force {:.3g} N, peak {:.3g} N",
-        study.pressed->stable ? "stable" : "UNSTABLE", study.pressed->ripple_n, study.pressed->peak_n));
+    found.lines.push_back(
+        fmt::format("pressed by the hand and held: {}, ripple of the force {:.3g} {unit}, peak {:.3g} {unit}",
+                    study.pressed->stable ? "stable" : "UNSTABLE", study.pressed->ripple_n,
+                    study.pressed->peak_n, fmt::arg("unit", on.units.force())));
   }
+  if (!study.met) found.lines = {never_met(study, on)};
   const std::span all(law_conditions);
   const auto conditions = study.pressed ? all : all.first(all.size() - 1);  // the last is that of the press
   found.json["conditions"] = to_json(conditions);
   for (std::string& line : in_words(conditions)) found.lines.push_back(std::move(line));
   found.json["in_words"] = found.lines;
-  found.figures.push_back({"law", picture_of(study.model, study.map)});
-  found.html = device_table(study.device);
+  found.figures.push_back({"law", picture_of(study.model, study.map, on.units)});
+  found.html = device_table(study.device, on.units);
   return found;
 }
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "plot/plot.h"
+#include "stability/device/travel_units.h"
 #include "stability/maps.h"
 #include "stability/tool_way.h"
 
@@ -19,6 +20,7 @@ struct StudiedAxis {
   std::string axis;
   std::string grip;
   WayRequest way;  ///< of a law on several axes
+  TravelUnits units{};
 };
 
 /// What a study leaves behind: the numbers, a table of them, pictures, a page, and lines for a terminal.
@@ -40,6 +42,7 @@ struct LawStudy {
   ToolRange range;
   LawLimits limits;
   LawMap map;
+  bool met = true;                      ///< is_met() over the range; what is below says nothing else
   bool passive = true;                  ///< over the range, at the device's own rate
   std::optional<Gain> worst;            ///< of the range, if it is not passive
   std::optional<PressVerdict> pressed;  ///< in the hand, to the range's depth; none if there is no hand

@@ -105,6 +105,20 @@ void visit_gains(const SampledDevice& device, const AxisLaw& law, const ToolRang
 
 }  // namespace
 
+bool is_met(const AxisLaw& law, const ToolRange& range, double period_s) {
+  constexpr double fewest = 100.0;
+  const double ticks = std::max(fewest, std::ceil(range.depth_m / (range.speed_m_s * period_s)));
+  const double speed_m_s = range.depth_m / (ticks * period_s);
+  LawForce force(law, period_s);
+  for (double tick = 0.0; tick <= ticks; ++tick) {
+    if (force({.position_m = range.depth_m * tick / ticks, .speed_m_s = speed_m_s}) != 0.0) return true;
+  }
+  for (double tick = ticks; tick >= 0.0; --tick) {
+    if (force({.position_m = range.depth_m * tick / ticks, .speed_m_s = -speed_m_s}) != 0.0) return true;
+  }
+  return false;
+}
+
 bool is_passive_at(const SampledDevice& device, const AxisLaw& law, const ToolRange& range) {
   bool passive = true;
   visit_gains(device, law, range, [&](const Gain&) { return passive = false; });

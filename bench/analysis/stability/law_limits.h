@@ -18,6 +18,10 @@ struct ToolRange {
   double speed_m_s = 0.2;
 };
 
+/// Whether a law pushes or pulls anywhere where a tool goes to a depth and back at a speed. Of one that is
+/// never met no stroke says anything.
+[[nodiscard]] bool is_met(const AxisLaw& law, const ToolRange& range, double period_s);
+
 /// Whether no stroke that ends at a depth, at up to a speed, is given energy (strokes.h).
 [[nodiscard]] bool is_passive_at(const SampledDevice& device, const AxisLaw& law, const ToolRange& range);
 

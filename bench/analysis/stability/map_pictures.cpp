@@ -91,10 +91,10 @@ LawMap law_map_of(const json& study) {
 
 }  // namespace
 
-Chart picture_of(const WallMap& map) {
+Chart picture_of(const WallMap& map, const TravelUnits& units) {
   Chart chart{.title = "Virtual wall: where it comes to rest",
-              .x_label = "damping of the wall B [N·s/m]",
-              .y_label = "stiffness of the wall K [N/m]",
+              .x_label = fmt::format("damping of the wall B [{}]", units.damping()),
+              .y_label = fmt::format("stiffness of the wall K [{}]", units.stiffness()),
               .cells = cells_of(map.cells, "comes to rest", "does not"),
               .x_range = {map.grid.second.front(), map.grid.second.back()},
               .y_range = {map.grid.first.front(), map.grid.first.back()},
@@ -117,31 +117,32 @@ Chart picture_of(const WallMap& map) {
   return chart;
 }
 
-Chart picture_of(const std::string& model, const LawMap& map) {
-  std::vector<double> depths_mm = map.grid.first;
-  for (double& depth : depths_mm) depth *= 1e3;
+Chart picture_of(const std::string& model, const LawMap& map, const TravelUnits& units) {
+  const ShownIn shown = units.depth();
+  std::vector<double> depths = map.grid.first;
+  for (double& depth : depths) depth *= shown.factor;
   const std::vector<double>& rates = map.grid.second;
-  Chart chart{
-      .title = fmt::format("{}: where strokes of up to {:.3g} m/s are given no energy", model, map.speed_m_s),
-      .x_label = "depth, in travel of the device [mm]",
-      .y_label = "sampling rate [Hz]",
-      .cells = cells_of(map.cells, "passive", "gains energy"),
-      .x_range = {depths_mm.front(), depths_mm.back()},
-      .y_range = {rates.front(), rates.back()},
-      .log_y = true,
-      .legend_below = true,
-      .width_px = 1000,
-      .height_px = 480};
-  chart.cells.x_edges = edges_of(depths_mm, false);
+  Chart chart{.title = fmt::format("{}: where strokes of up to {:.3g} {} are given no energy", model,
+                                   map.speed_m_s, units.speed()),
+              .x_label = fmt::format("depth, in travel of the device [{}]", shown.unit),
+              .y_label = "sampling rate [Hz]",
+              .cells = cells_of(map.cells, "passive", "gains energy"),
+              .x_range = {depths.front(), depths.back()},
+              .y_range = {rates.front(), rates.back()},
+              .log_y = true,
+              .legend_below = true,
+              .width_px = 1000,
+              .height_px = 480};
+  chart.cells.x_edges = edges_of(depths, false);
   chart.cells.y_edges = edges_of(rates, true);
   Curve theory{.label = "local stiffness = passive stiffness", .colour = Colour::black, .width = 2.0};
-  const std::size_t columns = depths_mm.size();
+  const std::size_t columns = depths.size();
   for (std::size_t row = 0; row < rates.size(); ++row) {
     const auto begin = map.cells.begin() + static_cast<std::ptrdiff_t>(row * columns);
     const auto beyond = std::find_if(begin, begin + static_cast<std::ptrdiff_t>(columns),
                                      [](const Cell& cell) { return !cell.theory; });
     const auto at = static_cast<std::size_t>(beyond - begin);
-    theory.x.push_back(at == 0 || at == columns ? line_break : 0.5 * (depths_mm[at - 1] + depths_mm[at]));
+    theory.x.push_back(at == 0 || at == columns ? line_break : 0.5 * (depths[at - 1] + depths[at]));
     theory.y.push_back(rates[row]);
   }
   chart.curves.push_back(std::move(theory));
@@ -157,17 +158,21 @@ std::optional<Chart> map_picture(const json& study) {
   if (!study.contains("cells") || study.at("cells").empty()) return std::nullopt;
   if (of == "plane") return plane_picture(study);
   if (of == "wall") {
-    Chart chart = picture_of(wall_map_of(study));
+    const TravelUnits units(study);
+    Chart chart = picture_of(wall_map_of(study), units);
     const auto own = study.at("on").at("damping_n_s_per_m").get<double>();
-    chart.vertical.push_back({.at = own,
-                              .label = fmt::format("the device's own damping: {:.3g} N·s/m", own),
-                              .label_after = true});
+    chart.vertical.push_back(
+        {.at = own,
+         .label = fmt::format("the device's own damping: {:.3g} {}", own, units.damping()),
+         .label_after = true});
     return chart;
   }
-  Chart chart = picture_of(study.at("law").get<std::string>(), law_map_of(study));
-  const double asked_mm = 1e3 * study.at("range").at("depth_m").get<double>();
+  const TravelUnits units(study);
+  const ShownIn shown = units.depth();
+  Chart chart = picture_of(study.at("law").get<std::string>(), law_map_of(study), units);
+  const double asked = shown.factor * study.at("range").at("depth_m").get<double>();
   chart.vertical.push_back(
-      {.at = asked_mm, .label = fmt::format("asked for: {:.3g} mm", asked_mm), .label_after = true});
+      {.at = asked, .label = fmt::format("asked for: {:.3g} {}", asked, shown.unit), .label_after = true});
   return chart;
 }
 

@@ -34,7 +34,8 @@ StudiedAxis studied(const StudyOptions& options, const drivers::DeviceInfo& info
   return {.device_uri = options.on.device_uri,
           .axis = info.axes[axis].name,
           .grip = options.on.grip,
-          .way = options.on.way};
+          .way = options.on.way,
+          .units = TravelUnits(info.axes[axis])};
 }
 
 /// A law along its line, and the axis of the device whose mass and friction are taken.
@@ -234,13 +235,15 @@ LawFindings study_law(const LawFile& file, const std::string& name, const StudyO
                  .range = range,
                  .limits = limits_of(device, law, range, search * range.depth_m),
                  .map = law_map(device, law, range.speed_m_s, grid, options.map),
+                 .met = is_met(law, range, device.period_s),
                  .passive = is_passive(device, law, range),
                  .worst = worst_stroke(device, law, range)};
-  if (device.hand.stiffness_n_per_m > 0.0) study.pressed = press(device, law, {.depth_m = range.depth_m});
+  if (study.met && device.hand.stiffness_n_per_m > 0.0)
+    study.pressed = press(device, law, {.depth_m = range.depth_m});
   Findings findings = findings_of(study, studied(options, info, axis));
   known.tell(findings);
   return {.findings = std::move(findings),
-          .holds = study.passive && (!study.pressed || study.pressed->stable)};
+          .holds = study.met && study.passive && (!study.pressed || study.pressed->stable)};
 }
 
 }  // namespace kerf::bench

@@ -81,7 +81,7 @@ inline constexpr std::size_t max_directions = 72;
 /// neither known nor given.
 [[nodiscard]] Findings study_controllers(const StudyOptions& options, const std::atomic<bool>& stop);
 
-/// Limits and map of a law, and whether it is passive over the range and stable in the hand.
+/// Limits and map of a law, and whether it is met, passive over the range and stable in the hand.
 struct LawFindings {
   Findings findings;
   bool holds = true;

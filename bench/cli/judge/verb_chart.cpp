@@ -18,6 +18,7 @@
 #include "files/whole_folder.h"
 #include "fits/row_doubts.h"
 #include "laws/plugin_laws.h"
+#include "program/contact_arguments.h"
 #include "program/progress.h"
 #include "program/verbs.h"
 #include "recordings/whole_recording.h"
@@ -33,6 +34,7 @@ struct ChartVerbArguments {
   std::string scene;
   std::string output;
   std::string axis;
+  AskedContact contact;
   std::string cycles = "good";
   std::vector<std::string> laws;
   double rate_hz = 0.0;  ///< 0: not given
@@ -49,8 +51,10 @@ void check(const ChartVerbArguments& arguments) {
   if (arguments.recording.empty() == arguments.scene.empty()) {
     throw std::invalid_argument("give a recording, or a scene with --scene, and not both");
   }
-  if (!arguments.scene.empty() && (!arguments.axis.empty() || arguments.no_folds)) {
-    throw std::invalid_argument("--axis and --no-folds are for a recording, not for a scene");
+  if (!arguments.scene.empty() &&
+      (!arguments.axis.empty() || arguments.no_folds || arguments.contact.given())) {
+    throw std::invalid_argument(
+        "--axis, --contact, --direction and --no-folds are for a recording, not for a scene");
   }
   if (!arguments.output.empty()) require_disk(arguments.output, bytes_of_results, "charts and tables");
   for (const auto* name : names) {
@@ -60,7 +64,8 @@ void check(const ChartVerbArguments& arguments) {
 
 SpeedAccuracy chart_of_recording(const ChartVerbArguments& arguments, ChartOptions options) {
   const schema::Recording recording = read_whole_recording(arguments.recording);
-  const FitSource source = charted(recording, fs::path(arguments.recording).stem().string(), arguments.axis);
+  FitSource source = charted(recording, fs::path(arguments.recording).stem().string(), arguments.axis);
+  source.contact = arguments.contact.over(source.contact);
   const schema::Axis& axis = recording.axes[source.axis];
   options.jnd = fitting::jnd_of(axis.force_unit, axis.lever);
   fitting::FitOptions settings;
@@ -107,11 +112,12 @@ std::string microseconds(double nanoseconds) {
 }
 
 void say_chart(const SpeedAccuracy& chart, Context& context) {
-  context.say(fmt::format("errors towards {}; JND {:.3g} N", chart.reference, chart.jnd_n));
+  context.say(
+      fmt::format("errors towards {}; JND {:.3g} {}", chart.reference, chart.jnd_n, chart.force_unit));
   if (!chart.convergence.refinements.empty()) context.say(convergence_in_words(chart.convergence));
   context.say(fmt::format("  {:3} {:16} {:32} {:>4} {:>9} {:>9} {:>9} {:>11} {:>10} {:>9} {:>8}", "", "law",
-                          "fidelity", "par.", "p50 us", "p99.9 us", "cold p99", "cold p99.9", "error N",
-                          "JND", "outside%"));
+                          "fidelity", "par.", "p50 us", "p99.9 us", "cold p99", "cold p99.9",
+                          "error " + chart.force_unit, "JND", "outside%"));
   for (const ChartPoint& point : chart.points) {
     context.say(fmt::format(
         "  {:1}{:1}{:1} {:16} {:32} {:4} {:9.3f} {:9.3f} {:>9} {:>11} {:10.3g} {:9.3g} {:8.1f}",
@@ -180,6 +186,7 @@ void add_chart(CLI::App& app, Context& context) {
       .separated_by(',');
   verb.add_option("--axis", arguments->axis,
                   "Axis of the recording (default: that of its cycles, or the first)");
+  add_contact_options(verb, arguments->contact, "from the recording");
   verb.add_option(
           "--cycles", arguments->cycles,
           "Cycles of the recording to fit and judge by: good (without a flag of 'kerf inspect'), all, or a "

@@ -25,6 +25,7 @@ struct CheckVerbArguments {
   std::string output;
   AskedContact contact;
   std::optional<double> floor;
+  RefuseIdle refuse_idle;
 };
 
 /// The law to run. In a scene it is felt in place of the tissue, which is the law itself if none is given.
@@ -42,6 +43,8 @@ void choose_law(const std::string& file, RunOptions& options) {
 
 void run_check(const CheckVerbArguments& arguments, Context& context) {
   if (!arguments.output.empty()) require_output(arguments.output, arguments.loop.options.replace);
+  if (arguments.loop.options.virtual_time && arguments.floor.value_or(0.0) > 0.0)
+    arguments.refuse_idle({"--floor"}, "--virtual", "it is for a loop by the wall clock");
   RunOptions options = run_options(arguments.loop);
   options.floor_s = arguments.floor.value_or(3.0);
   options.floor_anew = arguments.floor.has_value();
@@ -57,7 +60,7 @@ void run_check(const CheckVerbArguments& arguments, Context& context) {
   ConfirmOnEnter confirm;
   options.zero_hold = &confirm.hold();
   const RunResult result = run_on_device(options, signals.requested());
-  const Verdict verdict = judge(result);
+  const Verdict verdict = judge_law(result);
   context.result = check_as_json(result, verdict);
   context.result["law"] = std::string(options.law->law.model());
   if (const std::string plugin = plugin_in_words(options.law->law); !plugin.empty())
@@ -69,7 +72,8 @@ void run_check(const CheckVerbArguments& arguments, Context& context) {
   context.not_written = result.recording_failure;
 
   for (const std::string& line : check_lines(result, verdict)) context.say(line);
-  context.say(fmt::format("{}: {} at {:.0f} Hz on {}, {} ticks", verdict.passed ? "pass" : "FAIL",
+  const std::string_view name = name_of(verdict);
+  context.say(fmt::format("{}: {} at {:.0f} Hz on {}, {} ticks", name == "fail" ? "FAIL" : name,
                           options.law->law.model(), options.rate_hz, result.device.uri,
                           result.report.ticks()));
 }
@@ -78,13 +82,15 @@ void run_check(const CheckVerbArguments& arguments, Context& context) {
 
 void add_check(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<CheckVerbArguments>();
-  Verb verb =
-      add_verb(app, context, "check", "Run a law in closed loop with a device and judge its timing",
-               "kerf check fits/kelvin.law.toml --device sim:scissors --seconds 10\n\n"
-               "Exit status 1 if the law is too slow, more than 1 % of the deadlines were missed, or\n"
-               "law or device failed; the verdict says whose doing it was. An empty loop is measured\n"
-               "first, so that a late machine is not taken for a slow law. docs/real-time.md says more.",
-               [arguments, &context] { run_check(*arguments, context); });
+  Verb verb = add_verb(
+      app, context, "check", "Run a law in closed loop with a device and judge its timing",
+      "kerf check fits/kelvin.law.toml --device sim:scissors --seconds 10\n\n"
+      "Exit status 1 if the law is too slow, more than 1 % of the deadlines were missed, or\n"
+      "law or device failed; the verdict says whose doing it was. Likewise if the law was never felt:\n"
+      "then nothing is known of it. An empty loop is measured\n"
+      "first, so that a late machine is not taken for a slow law. docs/real-time.md says more.",
+      [arguments, &context] { run_check(*arguments, context); });
+  arguments->refuse_idle = verb.refuses_idle();
   verb.takes_laws(context);
   verb.add_option("LAW", arguments->law, "Law file (default: the tissue of --scene)");
   add_loop_options(verb, arguments->loop,

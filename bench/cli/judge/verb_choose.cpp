@@ -44,6 +44,7 @@ struct ChooseVerbArguments {
   AskedJnd jnd;
   std::string rows = "contact";
   std::string cycles = "good";
+  RefuseIdle refuse_idle;
 };
 
 std::string deadline_in_short(const std::optional<Deadline>& deadline) {
@@ -133,6 +134,10 @@ void choose_for_recording(const ChooseVerbArguments& arguments, Context& context
 
 void choose_for_blade(const ChooseVerbArguments& arguments, Context& context, const Scene& scene,
                       Output& output, const std::atomic<bool>& stop) {
+  arguments.refuse_idle({"--record-seconds", "--axis", "--contact", "--direction", "--most-segments",
+                         "--folds", "--rows", "--cycles"},
+                        "a scene whose law has axes of its own",
+                        "there its fidelity is chosen, and nothing is recorded or fitted");
   FidelityOptions options{.rate_hz = arguments.loop.rate_hz, .jnd = arguments.jnd.over(fitting::force_jnd)};
   LoopCheckOptions loop = arguments.loop;
   if (loop.device_uri.empty()) loop.device_uri = device_of(scene);
@@ -168,9 +173,19 @@ void choose_for_scene(const ChooseVerbArguments& arguments, Context& context, Ou
   choose_for_recording(arguments, context, recording, file, output, stop);
 }
 
+void refuse_idle_options(const ChooseVerbArguments& arguments) {
+  if (arguments.scene.empty())
+    arguments.refuse_idle({"--record-seconds"}, "a recording that is there", "it is for --scene");
+  if (!arguments.no_loop) return;
+  arguments.refuse_idle({"--device-model", "--grip", "--margin", "--seconds"}, "--no-loop",
+                        "it is for the closed loop");
+  if (arguments.scene.empty()) arguments.refuse_idle({"--device"}, "--no-loop", "it is for the closed loop");
+}
+
 void run_choose(const ChooseVerbArguments& arguments, Context& context) {
   if (arguments.recording.empty() == arguments.scene.empty())
     throw std::invalid_argument("name a recording, or a scene with --scene to make one of");
+  refuse_idle_options(arguments);
   if (!arguments.output.empty()) refuse_to_replace_choice(arguments.output, arguments.force);
   if (!arguments.output.empty())
     require_disk(arguments.output, bytes_of_results, "a law file and its reasons");
@@ -204,6 +219,7 @@ void add_choose(CLI::App& app, Context& context) {
       "is said. Segment a recording of cycles first. Exit status 1 if no law serves. docs/choosing.md says "
       "more.",
       [arguments, &context] { run_choose(*arguments, context); });
+  arguments->refuse_idle = verb.refuses_idle();
   verb.takes_laws(context);
   verb.add_option("RECORDING", arguments->recording, "Recording to choose a law for");
   verb.takes_texts(context, arguments->recording);

@@ -10,6 +10,7 @@
 
 #include "cases/case_findings.h"
 #include "files/whole_folder.h"
+#include "judge/stability_options.h"
 #include "laws/law_of_recording.h"
 #include "program/progress.h"
 #include "program/verbs.h"
@@ -33,6 +34,7 @@ struct StabilityVerbArguments {
   std::size_t threads = 0;
   std::string output;
   bool force = false;
+  RefuseIdle refuse_idle;
 };
 
 Findings study_cases(const StabilityVerbArguments& given, Context& context) {
@@ -41,16 +43,14 @@ Findings study_cases(const StabilityVerbArguments& given, Context& context) {
   return findings_of(cases, given.all_cases ? std::optional(control_costs()) : std::nullopt);
 }
 
-Findings study(const StabilityVerbArguments& given, Context& context) {
+/// Which study is asked for. @throws std::invalid_argument for several.
+StabilityMode mode_of(const StabilityVerbArguments& given) {
   const bool cases = given.all_cases || !given.cases.empty();
   if (cases && !given.law.empty()) {
     throw std::invalid_argument("a law and the named cases are studies of their own; give LAW or --cases");
   }
-  if (cases) return study_cases(given, context);
-  StudyOptions options = given.study;
-  options.map.with_cells = !given.no_cells;
-  options.map.threads = given.threads > 0 ? given.threads : std::max(1U, std::thread::hardware_concurrency());
-  const bool several = !options.several.of.empty();
+  if (cases) return StabilityMode::cases;
+  const bool several = !given.study.several.of.empty();
   const int of_walls = int{given.plane} + int{several} + int{given.z_width} + int{given.controllers};
   if (of_walls > 1) {
     throw std::invalid_argument(
@@ -60,26 +60,53 @@ Findings study(const StabilityVerbArguments& given, Context& context) {
     throw std::invalid_argument(
         "--plane, --several, --z-width and --controllers speak of walls; leave out the law");
   }
-  if (options.sensor_at_hand && !given.controllers)
-    throw std::invalid_argument("--hand-sensor is for --controllers; leave it out, or give both");
-  if (given.plane) return study_plane(options);
-  if (several) return study_several(options);
-  if (given.z_width) {
-    const StopOnSignal stop;
-    options.z_width.progress = show_bar;
-    return study_z_width(options, stop.requested());
-  }
-  if (given.controllers) {
-    const StopOnSignal stop;
-    options.z_width.progress = show_bar;
-    return study_controllers(options, stop.requested());
-  }
-  if (given.law.empty()) return study_walls(options);
+  if (given.plane) return StabilityMode::plane;
+  if (several) return StabilityMode::several;
+  if (given.z_width) return StabilityMode::z_width;
+  if (given.controllers) return StabilityMode::controllers;
+  return given.law.empty() ? StabilityMode::walls : StabilityMode::law;
+}
+
+/// A hand without a spring presses no law, and strokes know of no hand.
+void refuse_idle_hand(const StabilityVerbArguments& given) {
+  if (requested_hand(given.study.on).stiffness_n_per_m > 0.0) return;
+  given.refuse_idle({"--hand-mass", "--hand-damping", "--hand-stiffness"}, "a law that no hand presses",
+                    "give --grip, or a --hand-stiffness greater than 0");
+}
+
+Findings study_law_file(const StabilityVerbArguments& given, const StudyOptions& options, Context& context) {
+  refuse_idle_hand(given);
   const LawFile law = read_law_file(given.law);
   LawFindings of_law = study_law(law, given.law, options);
   of_law.findings.json["law_of_recording"] = law_of_recording(law);
   if (!of_law.holds) context.exit = Exit::check_failed;
   return std::move(of_law.findings);
+}
+
+Findings study(const StabilityVerbArguments& given, Context& context) {
+  const StabilityMode mode = mode_of(given);
+  refuse_idle_options(given.refuse_idle, mode);
+  StudyOptions options = given.study;
+  options.map.with_cells = !given.no_cells;
+  options.map.threads = given.threads > 0 ? given.threads : std::max(1U, std::thread::hardware_concurrency());
+  options.z_width.progress = show_bar;
+  switch (mode) {
+    case StabilityMode::cases:
+      return study_cases(given, context);
+    case StabilityMode::plane:
+      return study_plane(options);
+    case StabilityMode::several:
+      return study_several(options);
+    case StabilityMode::z_width:
+      return study_z_width(options, StopOnSignal().requested());
+    case StabilityMode::controllers:
+      return study_controllers(options, StopOnSignal().requested());
+    case StabilityMode::law:
+      return study_law_file(given, options, context);
+    case StabilityMode::walls:
+      break;
+  }
+  return study_walls(options);
 }
 
 void run_stability(const StabilityVerbArguments& given, Context& context) {
@@ -107,11 +134,13 @@ void add_stability(CLI::App& app, Context& context) {
       "Without a law: virtual walls over stiffness and damping, simulated in virtual time, with the\n"
       "boundaries of the eigenvalues, of Colgate and Schenkel, and of Abbott and Okamura. With a law: the\n"
       "deepest penetration, the steepest approach and the lowest rate at which it is passive; exit\n"
-      "status 1 if it is not passive over --depth and --speed, or has a limit cycle in the hand that was\n"
+      "status 1 if it is never met or not passive over --depth and --speed, or has a limit cycle in the hand "
+      "that was\n"
       "given. With --cases: failures that the papers met, each of which must fail without its remedy and\n"
       "hold with it.\n"
       "docs/stability.md says what is simulated and what the lines mean.",
       [arguments, &context] { run_stability(*arguments, context); });
+  arguments->refuse_idle = verb.refuses_idle();
   verb.takes_laws(context);
   AxisRequest& on = arguments->study.on;
   verb.add_option("LAW", arguments->law, "Law file; without one, a virtual wall is mapped");

@@ -84,7 +84,8 @@ std::optional<FittedRange> read_range(const Place& place, const toml::table& tab
   return FittedRange{.least = depths[0], .most = depths[1], .fastest = speed[0]};
 }
 
-FitProvenance read_provenance(const Place& place, const toml::table& root, const std::string& position_unit) {
+FitProvenance read_provenance(const Place& place, const toml::table& root, const std::string& position_unit,
+                              const std::string& force_unit) {
   FitProvenance fit;
   if (root.get("fit") == nullptr) return fit;
   const toml::table& table = place.table(root, "fit");
@@ -96,7 +97,10 @@ FitProvenance read_provenance(const Place& place, const toml::table& root, const
   fit.date = place.text(table, "date", "");
   fit.software = place.text(table, "software", "");
   if (const toml::node* rmse = table.get("rmse")) {
-    const auto values = place.measured(*rmse, "rmse", "N").values;
+    // Up to 0.1.0 that of a torque was written in N, and meant N·m.
+    const toml::table* const given = rmse->as_table();
+    const bool is_of_old = given != nullptr && (*given)["unit"].value<std::string_view>() == "N";
+    const auto values = place.measured(*rmse, "rmse", is_of_old ? "N" : force_unit).values;
     if (values.size() != 1) place.refuse(*rmse, "'rmse' must be one number");
     fit.rmse_n = values[0];
   }
@@ -278,7 +282,7 @@ LawFile law_from_table(const toml::table& root, const std::string& name,
           .position_unit = position_unit,
           .force_unit = force_unit,
           .std_errors = std::move(parameters.std_errors),
-          .fit = read_provenance(place, root, position_unit),
+          .fit = read_provenance(place, root, position_unit, force_unit),
           .name = name};
 }
 
@@ -312,7 +316,8 @@ std::string to_toml(const LawFile& file) {
                         toml_text(file.fit.recording_sha256));
     if (!file.fit.recording_content.empty())
       text += fmt::format("content = {}\n", toml_text(file.fit.recording_content));
-    text += fmt::format("rmse = {{ value = {}, unit = \"N\" }}\n", toml_number(file.fit.rmse_n));
+    text += fmt::format("rmse = {{ value = {}, unit = \"{}\" }}\n", toml_number(file.fit.rmse_n),
+                        file.law.is_spatial() ? "N" : file.force_unit);
     if (const auto& range = file.fit.range)
       text += fmt::format(
           "penetration = {{ value = [{}, {}], unit = \"{}\" }}\nspeed = {{ value = {}, unit = \"{}/s\" }}\n",

@@ -85,6 +85,7 @@ struct Grid {
 /// What a run of the loop did. Everything it needs is inside, so that counting allocates nothing.
 struct LoopReport {
   std::uint64_t executed = 0;
+  std::uint64_t pushing = 0;                                  ///< of these, with a force along any axis
   std::array<std::uint64_t, stage_names.size()> missed_by{};  ///< deadlines, by the stage charged with them
   std::array<Histogram, stage_names.size()> stages;  ///< wake latency and the four stages of executed ticks
   Histogram cycle;                                   ///< read to record
@@ -260,6 +261,7 @@ void run_loop(Clock& clock, drivers::Device& device, Rendering& rendering, Recor
     const std::int64_t end_ns = times.mark(Stage::record, clock.now_ns());
 
     report.count(times, command.flags);
+    if (command.force != drivers::Axes{}) ++report.pushing;
     expected = tick + 1;
     due = grid.next(tick, end_ns);
     if (due != expected) {

@@ -175,6 +175,23 @@ Verdict judge(const RunResult& result) {
   return verdict;
 }
 
+Verdict judge_law(const RunResult& result) {
+  Verdict verdict = judge(result);
+  verdict.felt = result.report.pushing > 0;
+  if (verdict.felt) return verdict;
+  verdict.passed = false;
+  verdict.reasons.insert(verdict.reasons.begin(),
+                         fmt::format("the law was never felt: its force was zero in all {} ticks, so that "
+                                     "nothing was shown of it; is its contact where the tool goes?",
+                                     result.report.executed));
+  return verdict;
+}
+
+std::string_view name_of(const Verdict& verdict) {
+  if (verdict.passed) return "pass";
+  return verdict.felt || !verdict.causes.empty() ? "fail" : not_felt;
+}
+
 nlohmann::ordered_json figures_as_json(const std::vector<drivers::Figure>& figures) {
   auto json = nlohmann::ordered_json::object();
   for (const drivers::Figure& figure : figures) {
@@ -223,7 +240,7 @@ nlohmann::ordered_json check_as_json(const RunResult& result, const Verdict& ver
   json["histograms"] = {{"wake_us", buckets_of(report.stages[0])},
                         {"cycle_us", buckets_of(report.cycle)},
                         {"compute_cpu_us", buckets_of(report.compute_cpu)}};
-  json["verdict"] = verdict.passed ? "pass" : "fail";
+  json["verdict"] = name_of(verdict);
   json["causes"] = nlohmann::ordered_json::array();
   for (const Cause cause : verdict.causes)
     json["causes"].push_back(cause_names[static_cast<std::size_t>(cause)]);

@@ -19,6 +19,7 @@ inline constexpr double most_missed_share = 0.01;
 /// Whether a law held its rate in closed loop, in words.
 struct Verdict {
   bool passed = true;
+  bool felt = true;                  ///< the law pushed at all: else nothing was shown of it
   std::set<Cause> causes;            ///< of what failed
   std::vector<std::string> reasons;  ///< what failed, or what was found worth saying
 };
@@ -32,6 +33,14 @@ struct Verdict {
 /// law or device. Missed deadlines are set beside those of an empty loop on this machine, if the floor is
 /// known. Energy given to the hand is told and does not fail: a held spring always gives some.
 [[nodiscard]] Verdict judge(const RunResult& result);
+
+/// The same of a law that was run to be felt: one that never pushed has not passed, whatever held.
+[[nodiscard]] Verdict judge_law(const RunResult& result);
+
+/// A verdict of which nothing can be said, since the law never pushed.
+inline constexpr std::string_view not_felt = "not known";
+/// "pass", "fail", or not_felt.
+[[nodiscard]] std::string_view name_of(const Verdict& verdict);
 
 /// What the device counted, by name: value and unit.
 [[nodiscard]] nlohmann::ordered_json figures_as_json(const std::vector<drivers::Figure>& figures);

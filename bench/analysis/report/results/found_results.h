@@ -8,6 +8,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "segment/result_state.h"
+
 namespace kerf::bench {
 
 /// What a verb has found out.
@@ -25,7 +27,11 @@ struct FoundResult {
   std::filesystem::path file;
   std::string name;  ///< of the file, as a page has it
   nlohmann::ordered_json json;
-  Belongs belongs = Belongs::unknown;  ///< to the recording, or a law that was fitted to it
+  Belongs belongs = Belongs::unknown;        ///< to the recording, or a law that was fitted to it
+  ResultState state = ResultState::unknown;  ///< of the recording: tell_states()
+
+  /// Of this recording, and of the state that it is in now, as far as it says.
+  [[nodiscard]] bool is_of_now() const noexcept { return belongs == Belongs::here && !is_outdated(state); }
 };
 
 /// Reads results by their paths: a JSON that one of the verbs has written, or a folder that is looked

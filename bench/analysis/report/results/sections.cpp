@@ -14,6 +14,7 @@
 #include "identify/identified_page.h"
 #include "plot/plot.h"
 #include "report/fit_view.h"
+#include "report/results/states.h"
 #include "stability/map_pictures.h"
 #include "stability/stability_verdict.h"
 
@@ -86,6 +87,7 @@ std::optional<Chart> map_of(const FoundResult& result) {
 std::string whose(const FoundResult& result) {
   std::string html = fmt::format("<p class=\"soft\">From <code>{}</code>", escaped(result.name));
   if (result.belongs == Belongs::elsewhere) html += ", which is of another recording";
+  if (is_outdated(result.state)) html += ", which is " + escaped(outdated_in_words(result));
   if (result.belongs == Belongs::unknown && result.kind != ResultKind::device)
     html += ", which does not say which recording it is of";
   return html + ".</p>\n";
@@ -102,9 +104,10 @@ std::string choice_section(const FoundResult& result) {
                   sentence(made.at("why").get<std::string>()));
   if (made.contains("blame") && made.at("blame").is_string())
     text += " What is to blame: " + sentence(made.at("blame").get<std::string>());
-  const Answer answer = !serves                                         ? Answer::bad
-                        : doubt || result.belongs == Belongs::elsewhere ? Answer::partly
-                                                                        : Answer::good;
+  const Answer answer = !serves ? Answer::bad
+                        : doubt || result.belongs == Belongs::elsewhere || is_outdated(result.state)
+                            ? Answer::partly
+                            : Answer::good;
   std::string html = heading("Choice among all laws", result) + html_answer(answer, text);
   const Chart picture = choice_chart(choice);
   if (!picture.curves.empty()) html += html_figure(draw(picture));

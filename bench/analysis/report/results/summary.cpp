@@ -6,6 +6,8 @@
 #include <fmt/core.h>
 
 #include "identify/identified_page.h"
+#include "report/results/states.h"
+#include "run/check.h"
 
 namespace kerf::bench {
 namespace {
@@ -17,7 +19,7 @@ constexpr std::array all_kinds{ResultKind::inspection, ResultKind::fits,      Re
                                ResultKind::chart,      ResultKind::stability, ResultKind::replay,
                                ResultKind::check};
 
-SummaryLine of_inspection(const json& inspection) {
+SummaryLine of_inspection(const json& inspection, const std::optional<CycleCount>& now) {
   std::size_t flagged = 0;
   std::size_t cycles = 0;
   if (inspection.at("cycles").contains("list")) {
@@ -27,6 +29,11 @@ SummaryLine of_inspection(const json& inspection) {
     }
   }
   const std::size_t warnings = inspection.at("warnings").size();
+  if (now && cycles > 0 && (now->all != cycles || now->all - now->good != flagged))
+    return {.is_known = false,
+            .text = fmt::format("the recording: {} of {} cycles flagged now, {} of {} when it was inspected: "
+                                "run kerf inspect again",
+                                now->all - now->good, now->all, flagged, cycles)};
   return {.answer = flagged + warnings == 0 ? Answer::good : Answer::partly,
           .text = fmt::format("the recording: {} of {} cycles flagged, {} warning{}", flagged, cycles,
                               warnings, warnings == 1 ? "" : "s")};
@@ -68,9 +75,11 @@ SummaryLine of_chart(const json& chart) {
 
 SummaryLine of_stability(const json& stability) {
   const auto passive = stability.find("passive");
+  const std::string law = stability.value("law", std::string("the law"));
+  if (passive != stability.end() && passive->is_null())
+    return {.is_known = false, .text = fmt::format("stability: {} was never met", law)};
   if (passive == stability.end() || !passive->is_boolean())
     return {.is_known = false, .text = "stability: a study of walls or cases, not of a law"};
-  const std::string law = stability.value("law", std::string("the law"));
   if (!passive->get<bool>())
     return {.answer = Answer::bad, .text = fmt::format("stability: {} is not passive", law)};
   return {.answer = Answer::good,
@@ -111,6 +120,8 @@ SummaryLine of_replay(const json& replay) {
 
 SummaryLine of_check(const json& check) {
   const std::string law = check.value("law", std::string("the law"));
+  if (check.at("verdict") == not_felt)
+    return {.is_known = false, .text = fmt::format("closed loop: {} was never felt", law)};
   if (check.at("verdict") != "pass")
     return {.answer = Answer::bad, .text = fmt::format("closed loop: {} fails", law)};
   if (!check.at("passive").get<bool>())
@@ -128,11 +139,11 @@ std::string listed(const char* what, const std::vector<std::string>& lines) {
 
 }  // namespace
 
-SummaryLine summary_of(const FoundResult& result) {
+SummaryLine summary_of(const FoundResult& result, const std::optional<CycleCount>& cycles) {
   SummaryLine line;
   switch (result.kind) {
     case ResultKind::inspection:
-      line = of_inspection(result.json);
+      line = of_inspection(result.json, cycles);
       break;
     case ResultKind::fits:
       line = of_fits(result.json);
@@ -162,6 +173,11 @@ SummaryLine summary_of(const FoundResult& result) {
     if (line.answer == Answer::good) line.answer = Answer::partly;
     line.text += " (of another recording)";
   }
+  if (is_outdated(result.state)) {
+    line.is_known = false;
+    line.answer = std::max(line.answer, Answer::partly);
+    line.text += fmt::format(" ({})", outdated_in_words(result));
+  }
   if (result.kind == ResultKind::device) return line;
   if (result.belongs == Belongs::unknown && line.answer == Answer::good) {
     line = {.is_known = false, .text = line.text + " (of which recording, it does not say)"};
@@ -169,11 +185,12 @@ SummaryLine summary_of(const FoundResult& result) {
   return line;
 }
 
-std::string summary_paragraph(const std::vector<FoundResult>& results) {
+std::string summary_paragraph(const std::vector<FoundResult>& results,
+                              const std::optional<CycleCount>& cycles) {
   std::vector<std::string> holds, fails, unknown;
   Answer worst = Answer::good;
   for (const FoundResult& result : results) {
-    SummaryLine line = summary_of(result);
+    SummaryLine line = summary_of(result, cycles);
     worst = std::max(worst, line.answer);
     (!line.is_known ? unknown : line.answer == Answer::good ? holds : fails).push_back(std::move(line.text));
   }

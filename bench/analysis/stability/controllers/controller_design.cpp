@@ -77,20 +77,21 @@ ControllerDesign design_controller(WallController controller, const SampledDevic
   return design;
 }
 
-std::string in_words(const ControllerDesign& design) {
+std::string in_words(const ControllerDesign& design, const TravelUnits& units) {
   switch (design.controller) {
     case WallController::none:
       return "the wall as it is";
     case WallController::damping:
       return fmt::format(
-          "a damping of {:.3g} N·s/m, the largest damper that the device's friction keeps passive in any "
+          "a damping of {:.3g} {}, the largest damper that the device's friction keeps passive in any "
           "hand",
-          design.most_damping_n_s_per_m);
+          design.most_damping_n_s_per_m, units.damping());
     case WallController::coupling:
       return fmt::format(
-          "a spring of {:.4g} N/m and a damper of {:.3g} N·s/m, the stiffest that couple any passive wall to "
+          "a spring of {:.4g} {} and a damper of {:.3g} {}, the stiffest that couple any passive wall to "
           "any passive hand by {:.0f} % of the device's friction",
-          design.coupling_stiffness_n_per_m, design.coupling_damping_n_s_per_m, 100.0 * friction_used);
+          design.coupling_stiffness_n_per_m, units.stiffness(), design.coupling_damping_n_s_per_m,
+          units.damping(), 100.0 * friction_used);
     case WallController::passivity:
       return design.device.delay_s > 0.0 ? "damping where the wall gave energy that it had not stored; the "
                                            "device has a delay, and what "

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "stability/controllers/wall_controller.h"
+#include "stability/device/travel_units.h"
 
 namespace kerf::bench {
 
@@ -21,7 +22,7 @@ inline constexpr double friction_used = 0.95;
 /// device without viscous friction.
 [[nodiscard]] ControllerDesign design_controller(WallController controller, const SampledDevice& device);
 /// The same in words: what was chosen, and why.
-[[nodiscard]] std::string in_words(const ControllerDesign& design);
+[[nodiscard]] std::string in_words(const ControllerDesign& design, const TravelUnits& units = {});
 
 /// Whether a coupling Z_c = B_c G(z) + K_c T / (1 - z^-1), G the velocity filter, keeps device and hand from
 /// getting energy out of any passive discrete environment Z_e behind it:

@@ -23,14 +23,14 @@ constexpr double not_found_out = std::numeric_limits<double>::quiet_NaN();
 constexpr std::array controller_colours{Colour::blue, Colour::vermillion, Colour::green, Colour::purple,
                                         Colour::orange};
 
-json design_as_json(const ControllerDesign& design) {
+json design_as_json(const ControllerDesign& design, const TravelUnits& units) {
   json of = json::object();
   if (design.controller == WallController::damping) of["B_d"] = design.most_damping_n_s_per_m;
   if (design.controller == WallController::coupling) {
     of["K_c"] = design.coupling_stiffness_n_per_m;
     of["B_c"] = design.coupling_damping_n_s_per_m;
   }
-  of["in_words"] = in_words(design);
+  of["in_words"] = in_words(design, units);
   return of;
 }
 
@@ -66,46 +66,47 @@ json transparency_as_json(const ComparedController& one) {
 }
 
 /// What a controller holds at a damping, in words.
-std::string held_in_words(const WallRung& rung) {
+std::string held_in_words(const WallRung& rung, const std::string& unit) {
   switch (rung.end) {
     case SearchEnd::found:
-      return fmt::format("holds to {:.5g} N/m", rung.held_n_per_m);
+      return fmt::format("holds to {:.5g} {}", rung.held_n_per_m, unit);
     case SearchEnd::holds_throughout:
-      return fmt::format("holds to {:.5g} N/m, the end of the search", rung.held_n_per_m);
+      return fmt::format("holds to {:.5g} {}, the end of the search", rung.held_n_per_m, unit);
     case SearchEnd::holds_nowhere:
-      return fmt::format("fails at {:.5g} N/m already", rung.failed_n_per_m);
+      return fmt::format("fails at {:.5g} {} already", rung.failed_n_per_m, unit);
     case SearchEnd::not_finished:
       break;
   }
   return "not finished";
 }
 
-std::string line_of(const ComparedController& one, const Wall& wall) {
+std::string line_of(const ComparedController& one, const Wall& wall, const TravelUnits& units) {
+  const std::string unit = units.stiffness();
   std::string text = fmt::format("{}: ", name_of(one.design.controller));
   if (one.z_width.ladder.empty()) return text + "nothing was tried";
-  text += held_in_words(one.z_width.ladder.front());
+  text += held_in_words(one.z_width.ladder.front(), unit);
   if (one.transparency) {
     const TransparencyError& error = one.transparency->error;
     if (error.lines == 0) {
-      text += fmt::format("; at {:.5g} N/m nothing coherent: a stronger --strike would tell",
-                          wall.stiffness_n_per_m);
+      text += fmt::format("; at {:.5g} {} nothing coherent: a stronger --strike would tell",
+                          wall.stiffness_n_per_m, unit);
     } else {
       text += fmt::format(
-          "; at {:.5g} N/m it renders the wall to {:.2g} % ({:.2g} dB), with the device {:.2g} %",
-          wall.stiffness_n_per_m, 100.0 * error.loop_share, error.loop_db, 100.0 * error.felt_share);
+          "; at {:.5g} {} it renders the wall to {:.2g} % ({:.2g} dB), with the device {:.2g} %",
+          wall.stiffness_n_per_m, unit, 100.0 * error.loop_share, error.loop_db, 100.0 * error.felt_share);
     }
   } else if (!one.without.empty()) {
     text += "; no transparency: " + one.without;
   }
   if (one.tick_ns > 0.0) text += fmt::format("; {:.2g} ns a tick", one.tick_ns);
-  return text + fmt::format(" ({})", in_words(one.design));
+  return text + fmt::format(" ({})", in_words(one.design, units));
 }
 
 std::string text_or_unknown(double value) {
   return std::isfinite(value) ? fmt::format("{:.4g}", value) : std::string("not known");
 }
 
-Chart over_frequency(const char* title, const char* label, bool log_y) {
+Chart over_frequency(const char* title, const std::string& label, bool log_y) {
   return {.title = title,
           .x_label = "frequency [Hz]",
           .y_label = label,
@@ -132,9 +133,11 @@ Curve curve_of(const ComparedController& one, std::size_t number, double (*value
 }
 
 /// What each controller renders beside the wall that is commanded, and how coherent it was.
-void add_frequency_figures(const ComparedControllers& compared, Findings& found) {
-  Chart loop = over_frequency("Impedance that a controller renders", "|Z| of the loop [N·s/m]", true);
-  Chart felt = over_frequency("Impedance that the hand feels", "|Z| at the hand [N·s/m]", true);
+void add_frequency_figures(const ComparedControllers& compared, const std::string& unit, Findings& found) {
+  Chart loop =
+      over_frequency("Impedance that a controller renders", fmt::format("|Z| of the loop [{}]", unit), true);
+  Chart felt =
+      over_frequency("Impedance that the hand feels", fmt::format("|Z| at the hand [{}]", unit), true);
   Chart coherence = over_frequency("Coherence of excitation, force and position", "gamma^2 [1]", false);
   Curve commanded{.label = "commanded, K / (j w) + B",
                   .x = {},
@@ -169,11 +172,11 @@ void add_frequency_figures(const ComparedControllers& compared, Findings& found)
   found.figures.push_back({"coherence", std::move(coherence)});
 }
 
-void add_ladder_figure(const ComparedControllers& compared, Findings& found) {
+void add_ladder_figure(const ComparedControllers& compared, const TravelUnits& units, Findings& found) {
   if (compared.controllers.empty() || compared.controllers.front().z_width.ladder.size() < 2) return;
   Chart chart{.title = "Z-width of each controller",
-              .x_label = "damping of the wall B [N·s/m]",
-              .y_label = "stiffest wall K [N/m]",
+              .x_label = fmt::format("damping of the wall B [{}]", units.damping()),
+              .y_label = fmt::format("stiffest wall K [{}]", units.stiffness()),
               .log_y = true,
               .legend_below = true,
               .width_px = 900,
@@ -203,9 +206,11 @@ Findings findings_of(const ComparedControllers& compared, const StudiedAxis& on)
   found.csv =
       "controller,B_n_s_per_m,K_held_n_per_m,K_failed_n_per_m,end,eigenvalues_n_per_m,passive_n_per_m,"
       "wall_n_per_m,loop_share,loop_db,felt_share,felt_db,coherent_lines,tick_ns\n";
-  std::vector<std::vector<std::string>> table{{"controller", "B [N·s/m]", "holds to [N/m]",
-                                               "eigenvalues [N/m]", "passive, any hand [N/m]",
-                                               "error of the loop", "as felt", "tick [ns]"}};
+  const std::string stiffness = on.units.stiffness();
+  std::vector<std::vector<std::string>> table{
+      {"controller", fmt::format("B [{}]", on.units.damping()), fmt::format("holds to [{}]", stiffness),
+       fmt::format("eigenvalues [{}]", stiffness), fmt::format("passive, any hand [{}]", stiffness),
+       "error of the loop", "as felt", "tick [ns]"}};
   for (const ComparedController& one : compared.controllers) {
     const TransparencyError error = one.transparency ? one.transparency->error
                                                      : TransparencyError{.loop_share = not_found_out,
@@ -238,12 +243,12 @@ Findings findings_of(const ComparedControllers& compared, const StudiedAxis& on)
            percent(error.loop_share), percent(error.felt_share), fmt::format("{:.2g}", one.tick_ns)});
     }
     controllers.push_back({{"controller", name_of(one.design.controller)},
-                           {"design", design_as_json(one.design)},
+                           {"design", design_as_json(one.design, on.units)},
                            {"ladder", std::move(ladder)},
                            {"transparency", transparency_as_json(one)},
                            {"no_transparency", one.without.empty() ? json(nullptr) : json(one.without)},
                            {"tick_ns", one.tick_ns > 0.0 ? json(one.tick_ns) : json(nullptr)}});
-    found.lines.push_back(line_of(one, compared.wall));
+    found.lines.push_back(line_of(one, compared.wall, on.units));
   }
   for (const std::string& why : compared.left_out) found.lines.push_back("left out: " + why);
   if (!compared.finished)
@@ -258,6 +263,7 @@ Findings findings_of(const ComparedControllers& compared, const StudiedAxis& on)
         {"grip", on.grip},
         {"rate_hz", 1.0 / compared.model.period_s},
         {"simulated", compared.device.simulated}}},
+      {"units", as_json(on.units)},
       {"model", as_json(compared.model)},
       {"wall", has_wall ? json{{"K", compared.wall.stiffness_n_per_m}, {"B", compared.wall.damping_n_s_per_m}}
                         : json(nullptr)},
@@ -267,8 +273,8 @@ Findings findings_of(const ComparedControllers& compared, const StudiedAxis& on)
       {"controllers", std::move(controllers)}};
   found.json["in_words"] = found.lines;
   found.figures.push_back({"controllers", controllers_picture(found.json)});
-  add_ladder_figure(compared, found);
-  add_frequency_figures(compared, found);
+  add_ladder_figure(compared, on.units, found);
+  add_frequency_figures(compared, on.units.damping(), found);
   found.html = "<h2>Controllers</h2>\n" + html_table(table);
   return found;
 }
@@ -278,7 +284,7 @@ Chart controllers_picture(const json& study) {
   Chart chart{.title = fmt::format("Controllers of a wall on {}, axis {}", device.substr(0, device.find('?')),
                                    study.at("on").at("axis").get<std::string>()),
               .x_label = "error of the impedance that is rendered, 1 to 30 Hz, rms [%]",
-              .y_label = "stiffest wall that holds [N/m]",
+              .y_label = fmt::format("stiffest wall that holds [{}]", TravelUnits(study).stiffness()),
               .log_x = true,
               .log_y = true,
               .legend_below = true,

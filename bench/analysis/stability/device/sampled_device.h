@@ -16,7 +16,7 @@ using drivers::HandImpedance;
 /// x is read at t = n T, rounded to the encoder step; the velocity is its difference over T, low-passed at
 /// first order with a corner w (v += (1 - exp(-w T)) (difference - v)); the force computed from them reaches
 /// the motor `delay_s` later and is held for a period. In metres of travel, or radians and N·m where an axis
-/// has no lever.
+/// has no lever (TravelUnits).
 struct SampledDevice {
   double mass_kg = 0.05;             ///< m, > 0
   double viscous_n_s_per_m = 0.2;    ///< b, >= 0

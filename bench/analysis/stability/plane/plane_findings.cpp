@@ -53,10 +53,11 @@ json balance_of(const PlaneMap& map) {
   return balance;
 }
 
-std::string in_words(const PlaneMap::Wall& wall, PlaneLines lines) {
+std::string in_words(const PlaneMap::Wall& wall, PlaneLines lines, const TravelUnits& units) {
   return fmt::format(
-      "K = {:.4g} N/m stands at b/(K T) = {:.3g}, f_c/(K delta) = {:.3g}: by the lines {}; simulated, it {}",
-      wall.stiffness_n_per_m, wall.at.viscous, wall.at.coulomb, name_of(plane_region(wall.at, lines)),
+      "K = {:.4g} {} stands at b/(K T) = {:.3g}, f_c/(K delta) = {:.3g}: by the lines {}; simulated, it {}",
+      wall.stiffness_n_per_m, units.stiffness(), wall.at.viscous, wall.at.coulomb,
+      name_of(plane_region(wall.at, lines)),
       wall.behaviour == PlaneBehaviour::cycle || wall.behaviour == PlaneBehaviour::small_cycle
           ? fmt::format("has a {}", name_of(wall.behaviour))
           : std::string(name_of(wall.behaviour)));
@@ -84,8 +85,8 @@ Findings findings_of(const PlaneMap& map, const StudiedAxis& on) {
     found.csv += fmt::format("{:.8g},{:.8g},{},{}\n", at.viscous, at.coulomb, name_of(map.cells[i]), region);
   }
   json walls = json::array();
-  std::vector<std::vector<std::string>> table{
-      {"K [N/m]", "b / (K T)", "f_c / (K delta)", "K T^2 / M", "by the lines", "simulated"}};
+  std::vector<std::vector<std::string>> table{{fmt::format("K [{}]", on.units.stiffness()), "b / (K T)",
+                                               "f_c / (K delta)", "K T^2 / M", "by the lines", "simulated"}};
   for (const PlaneMap::Wall& wall : map.walls) {
     const std::string_view region = name_of(plane_region(wall.at, lines));
     walls.push_back({{"K", wall.stiffness_n_per_m},
@@ -98,7 +99,7 @@ Findings findings_of(const PlaneMap& map, const StudiedAxis& on) {
                      fmt::format("{:.3g}", wall.at.coulomb),
                      fmt::format("{:.3g}", alpha(wall.stiffness_n_per_m)), std::string(region),
                      std::string(name_of(wall.behaviour))});
-    found.lines.push_back(in_words(wall, lines));
+    found.lines.push_back(in_words(wall, lines, on.units));
   }
   if (!map.cells.empty()) {
     found.lines.push_back(fmt::format("{:.1f} % of {} cells did what the lines say, for K T^2 / M = {:.3g}",
@@ -113,6 +114,7 @@ Findings findings_of(const PlaneMap& map, const StudiedAxis& on) {
                   {"grip", on.grip},
                   {"rate_hz", 1.0 / period_s},
                   {"damping_n_s_per_m", map.device.viscous_n_s_per_m}}},
+                {"units", as_json(on.units)},
                 {"device", as_json(map.device)},
                 {"stiffness_n_per_m", map.stiffness_n_per_m},
                 {"stiffness", alpha(map.stiffness_n_per_m)},
@@ -190,13 +192,14 @@ Chart plane_picture(const json& study) {
               .mark = Mark::circles,
               .width = 3.0,
               .of = {}};
+  const std::string unit = TravelUnits(study).stiffness();
   for (const json& wall : study.at("walls")) {
     const double x = number_from(wall.at("viscous"));
     const double y = std::clamp(number_from(wall.at("coulomb")), coulomb.front(), coulomb.back());
     walls.x.push_back(x);
     walls.y.push_back(y);
     chart.labels.push_back(
-        {.x = x, .y = y, .text = fmt::format("{:.4g} N/m", number_from(wall.at("K"))), .left = false});
+        {.x = x, .y = y, .text = fmt::format("{:.4g} {}", number_from(wall.at("K")), unit), .left = false});
   }
   chart.curves.push_back(std::move(walls));
   return chart;

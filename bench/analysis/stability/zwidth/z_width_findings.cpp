@@ -25,24 +25,27 @@ json found_or_null(const WallRung& rung) {
   return rung.end == SearchEnd::found ? json(rung.boundary()) : json(nullptr);
 }
 
-std::string in_words(const WallRung& rung, const ZWidthTheory* theory) {
-  std::string text = fmt::format("B = {:.4g} N·s/m: ", rung.damping_n_s_per_m);
+std::string in_words(const WallRung& rung, const ZWidthTheory* theory, const TravelUnits& units) {
+  const std::string unit = units.stiffness();
+  std::string text = fmt::format("B = {:.4g} {}: ", rung.damping_n_s_per_m, units.damping());
   if (rung.end == SearchEnd::holds_throughout) {
-    text += fmt::format("holds to {:.5g} N/m, the end of the search", rung.held_n_per_m);
+    text += fmt::format("holds to {:.5g} {}, the end of the search", rung.held_n_per_m, unit);
   } else if (rung.end == SearchEnd::holds_nowhere) {
-    text += fmt::format("fails at {:.5g} N/m already", rung.failed_n_per_m);
+    text += fmt::format("fails at {:.5g} {} already", rung.failed_n_per_m, unit);
   } else if (rung.end == SearchEnd::not_finished) {
     return text + "not finished";
   } else {
-    text += fmt::format("holds to {:.5g} N/m, fails at {:.5g} N/m", rung.held_n_per_m, rung.failed_n_per_m);
+    text += fmt::format("holds to {:.5g} {unit}, fails at {:.5g} {unit}", rung.held_n_per_m,
+                        rung.failed_n_per_m, fmt::arg("unit", unit));
   }
   if (rung.failed_n_per_m > 0.0) {
-    text += rung.cycle_n > 0.0 ? fmt::format(" with {:.2g} N rms at {:.3g} Hz", rung.cycle_n, rung.cycle_hz)
-                               : std::string(", where the force passed its stop");
+    text += rung.cycle_n > 0.0
+                ? fmt::format(" with {:.2g} {} rms at {:.3g} Hz", rung.cycle_n, units.force(), rung.cycle_hz)
+                : std::string(", where the force passed its stop");
     if (rung.hysteresis) text += "; struck softly it holds there (hysteresis)";
   }
   if (theory == nullptr) return text;
-  text += fmt::format("; the model says {:.5g} N/m", theory->boundary);
+  text += fmt::format("; the model says {:.5g} {}", theory->boundary, unit);
   if (theory->band) text += fmt::format(" ({:.4g} to {:.4g})", theory->band->begin, theory->band->end);
   return text + fmt::format(", passive in any hand to {:.4g}", theory->passive);
 }
@@ -82,8 +85,11 @@ Findings findings_of(const ZWidth& measured, const std::vector<ZWidthTheory>& th
   found.csv =
       "B_n_s_per_m,K_held_n_per_m,K_failed_n_per_m,end,trials,hysteresis,cycle_n,cycle_hz,model_n_per_m,"
       "model_lower_n_per_m,model_upper_n_per_m,passive_n_per_m\n";
-  std::vector<std::vector<std::string>> table{{"B [N·s/m]", "holds to [N/m]", "fails at [N/m]", "model [N/m]",
-                                               "its interval", "passive, any hand", "trials"}};
+  const std::string stiffness = on.units.stiffness();
+  std::vector<std::vector<std::string>> table{
+      {fmt::format("B [{}]", on.units.damping()), fmt::format("holds to [{}]", stiffness),
+       fmt::format("fails at [{}]", stiffness), fmt::format("model [{}]", stiffness), "its interval",
+       "passive, any hand", "trials"}};
   const auto text_of = [](double value) {
     return value > 0.0 ? fmt::format("{:.4g}", value) : std::string("none");
   };
@@ -117,7 +123,7 @@ Findings findings_of(const ZWidth& measured, const std::vector<ZWidthTheory>& th
          text_of(rung.failed_n_per_m), text_of(said),
          std::isfinite(lower) ? fmt::format("{:.4g} to {:.4g}", lower, upper) : std::string("not known"),
          text_of(passive), fmt::format("{}", rung.trials)});
-    found.lines.push_back(in_words(rung, at));
+    found.lines.push_back(in_words(rung, at, on.units));
   }
   if (!measured.finished)
     found.lines.push_back("it was stopped before its end; what is told was found until then");
@@ -130,6 +136,7 @@ Findings findings_of(const ZWidth& measured, const std::vector<ZWidthTheory>& th
                   {"grip", on.grip},
                   {"rate_hz", 1.0 / measured.period_s},
                   {"simulated", measured.device.simulated}}},
+                {"units", as_json(on.units)},
                 {"model", model ? as_json(*model) : json(nullptr)},
                 {"model_by", !model ? json(nullptr) : json(by_eigenvalues ? "eigenvalues" : "simulation")},
                 {"search", as_json(measured.options)},
@@ -146,10 +153,11 @@ Findings findings_of(const ZWidth& measured, const std::vector<ZWidthTheory>& th
 
 Chart z_width_picture(const json& study) {
   const auto device = study.at("on").at("device").get<std::string>();
+  const TravelUnits units(study);
   Chart chart{.title = fmt::format("Z-width of {}, axis {}", device.substr(0, device.find('?')),
                                    study.at("on").at("axis").get<std::string>()),
-              .x_label = "damping of the wall B [N·s/m]",
-              .y_label = "stiffness of the wall K [N/m]",
+              .x_label = fmt::format("damping of the wall B [{}]", units.damping()),
+              .y_label = fmt::format("stiffness of the wall K [{}]", units.stiffness()),
               .log_y = true,
               .legend_below = true,
               .width_px = 900,

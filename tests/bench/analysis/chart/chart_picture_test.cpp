@@ -135,6 +135,15 @@ TEST(ChartPicture, KeepsWithinItsBordersWhatIsUnknownOrTooSmall) {
   EXPECT_EQ(picture.x_range.end, 300.0);
 }
 
+TEST(ChartPicture, HasTheErrorsOfATorqueInItsOwnUnit) {
+  ordered_json chart = older_chart();
+  chart["compared_in"] = "N·m";
+  const Chart picture = chart_picture(chart);
+  EXPECT_THAT(picture.x_label, testing::StartsWith("error, root mean square [N·m]"));
+  EXPECT_EQ(picture.vertical.back().at, chart["jnd_n"].get<double>()) << "the line of the JND";
+  EXPECT_EQ(curve(picture, "kelvin").x, curve(chart_picture(older_chart()), "kelvin").x);
+}
+
 TEST(ChartPicture, SaysHowFarTheReferenceItselfErrs) {
   ordered_json chart = older_chart();
   chart["reference_error"] = {{"converges", true}, {"estimate_jnd", 0.5}};

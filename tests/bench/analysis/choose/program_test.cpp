@@ -136,6 +136,12 @@ TEST_F(ProgramChoose, RefusesWithOneLine) {
   expect_refusal({cut, "--axis", "phi"}, 2, "theta");
   const std::string scenes = std::string(KERF_SOURCE_DIR) + "/examples/scenes/";
   expect_refusal({"--scene", scenes + "palpation.scene.toml"}, 2, "-o");
+  for (const auto& [option, value] :
+       {std::pair{"--device-model", "none.device.toml"}, std::pair{"--grip", "firm"},
+        std::pair{"--margin", "0.2"}, std::pair{"--seconds", "2"}, std::pair{"--device", "sim:axis"}}) {
+    expect_refusal({cut, "--no-loop", option, value}, 2, std::string(option) + " says nothing to --no-loop");
+  }
+  expect_refusal({cut, "--record-seconds", "2"}, 2, "it is for --scene");
   recording.force_measured.clear();
   expect_refusal({write(recording), "--no-loop"}, 2, "holds no force");
 }

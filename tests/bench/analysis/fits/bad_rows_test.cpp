@@ -139,6 +139,40 @@ TEST_F(BadRows, ThatAreMissingAreSaidToBeWhereALawRemembers) {
     EXPECT_THAT(outcome.errors, HasSubstr("rows are missing once, for 1.5 s from 0.899 s on"));
 }
 
+TEST_F(BadRows, AreCountedOnceWhereSeveralGapsAreFollowedByTheSame) {
+  schema::Recording recording = test::punch();
+  const auto rows_told = [&](std::size_t gaps) {
+    schema::Recording late = recording;
+    for (std::size_t gap = 0; gap < gaps; ++gap)
+      for (std::size_t row = 900 + gap; row < late.time.size(); ++row) late.time[row] += 1.5;
+    keep(late);
+    std::filesystem::remove_all(folder_ / "fits");
+    const std::string said = fit().errors;
+    const std::string words = " rows until the tool is free again";
+    const std::size_t end = said.find(words);
+    EXPECT_NE(end, std::string::npos) << said;
+    const std::size_t begin = said.rfind(' ', end - 1) + 1;
+    return std::stoul(said.substr(begin, end - begin));
+  };
+  const std::size_t after_one = rows_told(1);
+  EXPECT_EQ(rows_told(3), after_one);
+}
+
+TEST_F(BadRows, ThatAreInTwoRecordingsAreSaidToCountTwice) {
+  keep(test::punch());
+  schema::Recording again = test::punch();
+  schema::write_recording(folder_ / "again.h5", again);
+  const auto fitted_with_it = [&] {
+    return run_kerf({"fit", file_, folder_ / "again.h5", "--models", "kelvin", "--no-folds", "--force", "-o",
+                     folder_ / "both"});
+  };
+  EXPECT_THAT(fitted_with_it().errors, HasSubstr("hold the same rows, which count twice"));
+  again.force_measured[700] += 0.01;
+  std::filesystem::remove(folder_ / "again.h5");
+  schema::write_recording(folder_ / "again.h5", again);
+  EXPECT_THAT(fitted_with_it().errors, Not(HasSubstr("hold the same rows")));
+}
+
 TEST_F(BadRows, OfASensorAtItsEndAreSaidToBeWhereALawIsChosen) {
   keep(with([](std::size_t, double force) { return std::min(force, 1.0); }));
   EXPECT_THAT(choose().errors, HasSubstr("the sensor may be saturated there"));

@@ -101,7 +101,7 @@ TEST_F(ReportProgram, HasNoGreenBesideAChoiceThatIsNotWithinTheJnd) {
 TEST_F(ReportProgram, HasNoGreenBesideALawThatIsNotPassive) {
   record("cut.h5");
   ASSERT_EQ(run_kerf({"fit", file_, "--models", "kelvin", "--no-folds", "-o", fits()}).exit_status, 0);
-  ASSERT_EQ(run_kerf({"check", fits() + "/kelvin.law.toml", "--virtual", "--seconds", "0.5", "-o", check()})
+  ASSERT_EQ(run_kerf({"check", fits() + "/kelvin.law.toml", "--virtual", "--seconds", "2", "-o", check()})
                 .exit_status,
             0);
   ASSERT_EQ(report({"--check", check()}).exit_status, 0);

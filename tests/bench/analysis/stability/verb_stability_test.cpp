@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -105,6 +107,81 @@ TEST(KerfStability, TakesALawOnSeveralAxesAlongADirection) {
   const Outcome slower = told("1100");
   EXPECT_EQ(slower.exit_status, 1);
   EXPECT_FALSE(json::parse(slower.output)["passive"].get<bool>());
+}
+
+TEST(KerfStability, SpeaksOfAnAngleWithoutALeverInRadians) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> axis{
+      "--device",  "sim:premium", "--mass",  "0.01", "--viscous", "0.01",
+      "--coulomb", "0.01",        "--cells", "4",    "-o",        (folder.path() / "out").string(),
+      "--force"};
+  const auto told = [&](std::vector<std::string> of) {
+    of.insert(of.begin(), "stability");
+    of.insert(of.end(), axis.begin(), axis.end());
+    const Outcome run = run_kerf(of);
+    EXPECT_LE(run.exit_status, 1) << run.errors;
+    const std::string all = run.output + test::read_text(folder.path() / "out/stability.html");
+    EXPECT_THAT(all, AllOf(Not(HasSubstr(" mm")), Not(HasSubstr("m/s ")), Not(HasSubstr("N/m"))));
+    const json found = json::parse(test::read_text(folder.path() / "out/stability.json"));
+    EXPECT_EQ(found["units"]["stiffness"], "N·m/rad");
+    return run.output;
+  };
+  const std::string law = told({examples + "orthogonal.law.toml", "--along", "q1=1"});
+  EXPECT_THAT(law, AllOf(HasSubstr("to 0.01 rad and 0.2 rad/s at 1000 Hz"), HasSubstr("N·m/rad: ")));
+  EXPECT_THAT(told({"--axis", "q1"}), HasSubstr("passive to 20 N·m/rad"));
+  EXPECT_THAT(told({"--axis", "q1", "--plane"}), HasSubstr("K = 20 N·m/rad stands at"));
+}
+
+TEST(KerfStability, SaysOfALawThatIsNeverMetThatNothingIsKnown) {
+  const auto told = [](const std::string& from) {
+    return run_kerf({"stability", examples + "blade.law.toml", "--device", "sim:pose6", "--along", "z=-1",
+                     "--from", from, "--grip", "light", "--cells", "2", "--json"});
+  };
+  const Outcome above = told("z=5");
+  EXPECT_EQ(above.exit_status, 1) << "nothing was shown";
+  const json found = json::parse(above.output);
+  EXPECT_TRUE(found["passive"].is_null());
+  EXPECT_EQ(found["met"], false);
+  EXPECT_FALSE(found.contains("press"));
+  EXPECT_THAT(found["in_words"][0].get<std::string>(),
+              HasSubstr("blade along z=-1 from z=5: never met, its force is zero to 10 mm"));
+  EXPECT_THAT(found["in_words"].dump(), Not(HasSubstr("passive by all strokes")));
+  EXPECT_EQ(json::parse(told("z=0.1").output)["met"], true);
+}
+
+TEST(KerfStability, RefusesOptionsThatSayNothingToTheStudy) {
+  const auto refusal = [](std::vector<std::string> words) {
+    words.insert(words.begin(), "stability");
+    const Outcome run = run_kerf(std::move(words));
+    EXPECT_EQ(run.exit_status, 2);
+    EXPECT_EQ(std::ranges::count(run.errors, '\n'), 1) << run.errors;
+    return run.errors;
+  };
+  const std::string law = examples + "kelvin.law.toml";
+  for (const auto* option :
+       {"--felt", "--strike", "--push", "--wall", "--across", "--wall-damping", "--rotation", "--stop-at",
+        "--false-alarms", "--model-error", "--seconds", "--resolution"}) {
+    EXPECT_THAT(refusal({law, option, "0.5"}),
+                HasSubstr(std::string(option) + " says nothing to a law; it is for"))
+        << option;
+  }
+  EXPECT_THAT(refusal({law, "--stiffness", "1", "2"}),
+              HasSubstr("it is for virtual walls, --several, --z-width"));
+  for (const auto* option : {"--rungs", "--repeats"}) {
+    EXPECT_THAT(refusal({law, option, "2"}), HasSubstr("it is for --z-width, --controllers"));
+  }
+  EXPECT_THAT(refusal({law, "--boundaries"}), HasSubstr("it is for virtual walls, --plane"));
+  EXPECT_THAT(refusal({law, "--hand-mass", "0.1"}), HasSubstr("give --grip"));
+  for (const auto* option : {"--depth", "--speed", "--felt"}) {
+    EXPECT_THAT(refusal({option, "0.5"}), HasSubstr(std::string(option) + " says nothing to virtual walls"));
+  }
+  EXPECT_THAT(refusal({"--along", "z=1"}),
+              HasSubstr("--along says nothing to virtual walls; it is for a law"));
+  EXPECT_THAT(refusal({"--plane", "--cells", "4", "--push", "1"}), HasSubstr("says nothing to --plane"));
+  EXPECT_THAT(refusal({"--z-width", "--cells", "4"}), HasSubstr("says nothing to --z-width"));
+  EXPECT_THAT(refusal({"--several", "sim:axis", "--mass", "1"}), HasSubstr("says nothing to --several"));
+  EXPECT_THAT(refusal({"--controllers", "--depth", "1"}), HasSubstr("says nothing to --controllers"));
+  EXPECT_THAT(refusal({"--cases", "--rate", "500"}), HasSubstr("says nothing to --cases"));
 }
 
 TEST(KerfStability, RunsTheNamedCases) {

@@ -114,6 +114,22 @@ TEST(LawFile, OfASpatialLawHasNoContact) {
   EXPECT_THAT(refusal("axis = \"x\"\n" + text), HasSubstr("leave 'axis' out"));
 }
 
+TEST(LawFile, OfATorqueHasItsErrorInItsUnit) {
+  LawFile file{.law = models::Law::make("kelvin", std::vector{1.0, 2.0, 0.1}),
+               .contact = {},
+               .axis = "angle",
+               .position_unit = "rad",
+               .force_unit = "N·m"};
+  file.fit.recording_uuid = "0d7c";
+  file.fit.rmse_n = 0.25;
+  const std::string text = to_toml(file);
+  EXPECT_THAT(text, HasSubstr("rmse = { value = 0.25, unit = \"N·m\" }"));
+  EXPECT_EQ(parse_law_file(text, "x.law.toml").fit.rmse_n, 0.25);
+  const auto at = text.find("unit = \"N·m\" }", text.find("rmse"));
+  const std::string of_old = text.substr(0, at) + "unit = \"N\" }" + text.substr(text.find(" }", at) + 2);
+  EXPECT_EQ(parse_law_file(of_old, "x.law.toml").fit.rmse_n, 0.25) << "as earlier versions wrote it";
+}
+
 TEST(LawFile, RoundTripsEveryKindOfParameterAndOption) {
   const LawFile file{
       .law = models::Law::make("piecewise", std::vector{0.0, 0.1, 1.0 / 3.0, 0.0, 2.0, 3.0, -0.5, -1.0, -0.1},

@@ -66,6 +66,21 @@ TEST(Verdict, ToleratesOneDeadlineInAHundredAndTellsOfIt) {
                   HasSubstr("for example tick 0: wake took")));
 }
 
+TEST(Verdict, IsNotKnownOfALawThatNeverPushed) {
+  RunResult result = run_of(10'000);
+  result.report.executed = 1000;
+  const Verdict never = judge_law(result);
+  EXPECT_FALSE(never.passed);
+  EXPECT_EQ(name_of(never), not_felt);
+  EXPECT_EQ(check_as_json(result, never).at("verdict"), "not known");
+  EXPECT_THAT(never.reasons,
+              ElementsAre(HasSubstr("the law was never felt: its force was zero in all 1000")));
+  result.report.pushing = 1;
+  EXPECT_EQ(name_of(judge_law(result)), "pass");
+  RunResult slow = run_of(520'000);
+  EXPECT_EQ(name_of(judge_law(slow)), "fail") << "it is too slow, felt or not";
+}
+
 TEST(CheckLines, ShowTheTimesOfTheJsonAStageALine) {
   RunResult result = run_of(10'000, 8'000);
   charge(result, Stage::write, 3);

@@ -124,7 +124,8 @@ TEST_F(LoopProgram, ChecksALawAndAddsUp) {
   ASSERT_LE(outcome.exit_status, 1) << outcome.errors;  // a loaded machine may fail the verdict
   const json result = json::parse(outcome.output);
   EXPECT_EQ(result, json::parse(test::read_text(at("c.json"))));
-  EXPECT_EQ(result.at("verdict"), outcome.exit_status == 0 ? "pass" : "fail");
+  EXPECT_NE(result.at("verdict"), "pass") << "in half a second nothing is felt of it";
+  EXPECT_EQ(outcome.exit_status, 1);
   EXPECT_EQ(result.at("ticks"), 500);
   EXPECT_EQ(result.at("executed").get<int>() + result.at("missed").get<int>(), 500);
   int missed = 0;
@@ -184,6 +185,27 @@ TEST(KerfCheck, RendersLawsThatActOnSeveralAxes) {
         run_kerf({"check", examples + law + ".law.toml", "--device", device, "--virtual", "--seconds", "2"});
     EXPECT_EQ(outcome.exit_status, 0) << law << ": " << outcome.errors;
   }
+}
+
+TEST(KerfCheck, DoesNotPassALawThatIsNeverFelt) {
+  const Outcome far =
+      run_kerf({"check", examples + "kelvin.law.toml", "--contact=-1000", "--virtual", "--seconds", "1"});
+  EXPECT_EQ(far.exit_status, 1);
+  EXPECT_THAT(far.output,
+              AllOf(HasSubstr("the law was never felt"), HasSubstr("not known: kelvin at 1000 Hz")));
+}
+
+TEST(KerfCheck, RefusesWhatNeverHappensInItsRun) {
+  const std::string law = examples + "kelvin.law.toml";
+  const auto refusal = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"check", law, "--virtual", "--seconds", "2"});
+    const Outcome outcome = run_kerf(more);
+    EXPECT_EQ(outcome.exit_status, 2);
+    return outcome.errors;
+  };
+  EXPECT_THAT(refusal({"--switch", law + "@5"}), HasSubstr("it is at 5 s of 2 s, and never happens"));
+  EXPECT_THAT(refusal({"--switch", law + "@2"}), HasSubstr("it is at 2 s of 2 s"));
+  EXPECT_THAT(refusal({"--floor", "1"}), HasSubstr("--floor says nothing to --virtual"));
 }
 
 TEST(KerfCheck, GivesSuchALawNoContactAndNoOtherDevice) {

@@ -5,8 +5,10 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <kerf/schema/recording.h>
 
@@ -20,6 +22,7 @@ namespace {
 using test::Outcome;
 using test::run_kerf;
 using testing::AllOf;
+using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -83,6 +86,42 @@ TEST_F(ReportOfResults, DrawsTheForceOfALawOverTheOneThatItFollows) {
       std::regex_search(chart.substr(0, chart.find("</svg>")), std::regex(R"(<text>(<[^>]*>)?\s*-[0-9])")));
   std::filesystem::remove(folder_ / "replay" / "kelvin.h5");
   EXPECT_THAT(page({at("replay")}), AllOf(Not(HasSubstr("on the same ticks")), HasSubstr("rms [JND]")));
+}
+
+TEST_F(ReportOfResults, HoldsNothingThatIsOfAnEarlierStateOfTheRecording) {
+  ran({"fit", at("cut.h5"), "--models", "kelvin", "--folds", "2", "-o", at("all/fits")}, 0);
+  ran({"chart", at("cut.h5"), "--laws", "kelvin", "--no-folds", "--no-cold", "-o", at("all/chart")}, 0);
+  test::write_text(at("all/inspect.json"), run_kerf({"inspect", at("cut.h5"), "--json"}).output);
+  const auto summary = [&] {
+    const std::string html = page({at("all")});
+    return html.substr(0, html.find("<h2>What was recorded"));
+  };
+  EXPECT_THAT(summary(), AllOf(ContainsRegex("Holds</strong>:.*fits: kelvin is within the JND"),
+                               Not(HasSubstr("again"))));
+  ran({"segment", at("cut.h5"), "--closing", "decreasing"}, 0);
+  EXPECT_THAT(
+      summary(),
+      AllOf(ContainsRegex("Not known</strong>:.*fits: kelvin is within the JND \\(of earlier cycles: "
+                          "run kerf fit again\\)"),
+            HasSubstr("(of earlier cycles: run kerf chart again)"), Not(HasSubstr("Holds</strong>"))));
+  schema::Recording recording = schema::read_recording(at("cut.h5"));
+  for (double& force : recording.force_measured) force *= 2.0;
+  schema::write_recording(at("cut.h5"), recording, schema::Existing::replace);
+  EXPECT_THAT(summary(), HasSubstr("of other samples than the recording has now: run kerf fit again"));
+}
+
+TEST_F(ReportOfResults, SaysWhereAFitAndAChartBeginAtDifferentPlaces) {
+  fit();
+  const auto chart_at = [&](const std::string& contact) {
+    ran({"chart", at("cut.h5"), "--laws", "kelvin", "--no-folds", "--no-cold", "--contact", contact, "-o",
+         at("all/chart"), "--force"},
+        0);
+    return page({at("all")});
+  };
+  EXPECT_THAT(chart_at("0.0021"), ContainsRegex("does not begin at one place.*kerf chart at 2.1 mm"));
+  const std::string fitted = test::read_text(at("all/fits/fit.json"));
+  const auto contact = nlohmann::json::parse(fitted)["recordings"][0]["contact"]["position"].get<double>();
+  EXPECT_THAT(chart_at(fmt::format("{}", contact)), Not(HasSubstr("does not begin at one place")));
 }
 
 TEST_F(ReportOfResults, NamesWhatNobodyHasLookedAtAndTheCommandForIt) {

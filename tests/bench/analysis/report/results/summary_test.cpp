@@ -81,6 +81,36 @@ TEST(Summary, TakesADeviceForWhatItIsThoughItIsOfNoRecording) {
   EXPECT_FALSE(of_axis("false", "null").is_known);
 }
 
+TEST(Summary, TakesWhatIsOfAnEarlierStateOfTheRecordingForNothingThatIsKnown) {
+  for (const ResultState state :
+       {ResultState::before_cycles, ResultState::other_cycles, ResultState::other_samples}) {
+    FoundResult result = of_kind(ResultKind::fits, R"({"choice": {"model": "kelvin", "within_jnd": true}})");
+    result.state = state;
+    const SummaryLine line = summary_of(result);
+    EXPECT_FALSE(line.is_known);
+    EXPECT_EQ(line.answer, Answer::partly);
+    EXPECT_THAT(line.text, HasSubstr(": run kerf fit again)"));
+  }
+}
+
+TEST(Summary, CountsTheCyclesThatTheRecordingHasNow) {
+  const FoundResult inspected = of_kind(ResultKind::inspection, all_good);
+  EXPECT_TRUE(summary_of(inspected, CycleCount{.good = 1, .all = 1}).is_known);
+  const SummaryLine line = summary_of(inspected, CycleCount{.good = 4, .all = 5});
+  EXPECT_FALSE(line.is_known);
+  EXPECT_THAT(line.text, HasSubstr("1 of 5 cycles flagged now, 0 of 1 when it was inspected"));
+}
+
+TEST(Summary, DoesNotKnowOfALawThatWasNeverMetOrFelt) {
+  const SummaryLine met = summary_of(of_kind(ResultKind::stability, R"({"law": "kelvin", "passive": null})"));
+  EXPECT_FALSE(met.is_known);
+  EXPECT_EQ(met.text, "stability: kelvin was never met");
+  const SummaryLine felt =
+      summary_of(of_kind(ResultKind::check, R"({"law": "kelvin", "verdict": "not known", "passive": true})"));
+  EXPECT_FALSE(felt.is_known);
+  EXPECT_EQ(felt.text, "closed loop: kelvin was never felt");
+}
+
 TEST(Summary, CountsFlagsAndWarningsAlsoWithoutAnyCycle) {
   EXPECT_EQ(
       summary_of(of_kind(ResultKind::inspection, R"({"cycles": null, "warnings": ["clipped"]})")).answer,

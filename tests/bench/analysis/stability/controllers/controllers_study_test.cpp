@@ -184,7 +184,8 @@ TEST(KerfStability, RefusesControllersOfWhatIsNotKnown) {
     return run.errors;
   };
   EXPECT_THAT(refusal({"--controllers", "--z-width"}), HasSubstr("give one"));
-  EXPECT_THAT(refusal({"--hand-sensor"}), HasSubstr("--hand-sensor is for --controllers"));
+  EXPECT_THAT(refusal({"--hand-sensor"}),
+              HasSubstr("--hand-sensor says nothing to virtual walls; it is for --controllers"));
   EXPECT_THAT(refusal({"--controllers", "--device", "sim:axis?tells=off"}), HasSubstr("give --mass"));
   EXPECT_THAT(refusal({"--controllers", "--wall", "100", "--wall", "200"}), HasSubstr("give one --wall"));
   EXPECT_THAT(refusal({"--controllers", "--wall", "-5"}), HasSubstr("greater than 0 N/m"));
