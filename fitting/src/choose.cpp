@@ -17,7 +17,7 @@ Choice no_choice(std::span<const FitResult> results) {
   return {.model = "",
           .why = results.empty() ? "no law could be fitted"
                                  : "of the laws that were fitted none converged to what explains the force "
-                                   "better than its mean does"};
+                                   "better than its mean does and is not felt where the tool is free"};
 }
 
 /// The laws that are not out of the question; those that say no more than a simpler one only where there is
@@ -106,8 +106,10 @@ Choice choose_simplest(std::span<const FitResult> results, const Series& series,
   if (felt) {
     const bool is_passed_over = std::ranges::any_of(
         results, [&](const FitResult& law) { return !law.can_be_chosen() && error(law) <= limit; });
-    why << (is_passed_over ? "no law that explains the force better than its mean does stays"
-                           : "no law stays")
+    why << (is_passed_over
+                ? "no law that explains the force better than its mean does, and is not felt where "
+                  "the tool is free, stays"
+                : "no law stays")
         << " within the JND of " << limit << unit << " (at the root mean square force of " << force_rms
         << unit << ") on " << held_out_in_words(*chosen, options) << "; " << chosen->model << " with "
         << error(*chosen) << unit << " has the fewest parameters (" << chosen->free_parameters

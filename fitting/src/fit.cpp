@@ -64,6 +64,32 @@ void measure_errors(FitResult& result, const std::vector<double>& residuals, con
   result.test_rmse = errors.test;
 }
 
+/// Rows before all that count, where nothing is felt: a law that is felt pushes at nothing. A tool that was
+/// closed with nothing in it is as deep as in the tissue, and says nothing of this.
+void measure_in_free_air(FitResult& result, const std::vector<double>& residuals, const Samples& samples,
+                         const FitOptions& options) {
+  constexpr std::size_t fewest = 100;
+  double first = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (samples.counts[i] != 0) first = std::min(first, samples.motion[i].penetration);
+  }
+  std::size_t count = 0;
+  std::size_t felt = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const bool is_before = samples.counts[i] == 0 && samples.motion[i].penetration < first;
+    if (!is_before || std::abs(samples.force[i]) > options.jnd.threshold) continue;
+    ++count;
+    felt += std::abs(residuals[i]) > options.jnd.threshold ? 1 : 0;
+  }
+  if (count < fewest) return;
+  result.free_fraction = static_cast<double>(felt) / static_cast<double>(count);
+  if (!result.is_felt_in_free_air()) return;
+  std::ostringstream warning;
+  warning << "it is felt where the tool is free, in " << std::lround(100.0 * result.free_fraction)
+          << " % of the rows without a force, and is not chosen";
+  result.warnings.push_back(warning.str());
+}
+
 /// The same of the law as it is rendered.
 void measure_rendered(FitResult& result, const std::vector<double>& residuals, const Samples& samples) {
   if (residuals.empty()) return;
@@ -162,6 +188,7 @@ void measure(FitResult& result, const Trained& law, const Samples& samples, cons
   measure_errors(result, residuals, samples, options.jnd);
   measure_rendered(result, rendered_residuals(law.problem, law.solution.values, samples, options.render),
                    samples);
+  measure_in_free_air(result, residuals, samples, options);
   warn_of_a_misfit(result);
   warn_of_pulling(result, law, residuals, samples);
 }
@@ -182,7 +209,6 @@ FitResult fit_samples(std::string_view model, const Samples& samples, const FitO
   }
   result.converged = law.solution.converged;
   result.iterations = law.solution.iterations;
-  memory.keep_whole(law.solution.values);
   tell_a_part(options);
   measure(result, law, samples, options);
   estimate_parameters(result, law.problem, samples, law.weights, law.solution, options, law.loss);

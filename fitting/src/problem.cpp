@@ -11,11 +11,16 @@ Eigen::Index Problem::coordinates() const { return static_cast<Eigen::Index>(all
 std::vector<Problem::Coordinate> Problem::all() const {
   std::vector<Coordinate> list;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
-    if (!free[i]) continue;
-    if (!own[i]) list.push_back({i, Estimate::shared});
-    for (std::size_t run = 0; own[i] && run < runs; ++run) list.push_back({i, run});
+    for (std::size_t run = 0; run < (own[i] ? runs : 1); ++run) {
+      if (is_searched(i, run)) list.push_back({i, own[i] ? run : Estimate::shared});
+    }
   }
   return list;
+}
+
+bool Problem::is_searched(std::size_t parameter, std::size_t run) const {
+  const Coordinate coordinate{parameter, own[parameter] ? run : Estimate::shared};
+  return free[parameter] && std::ranges::find(held, coordinate) == held.end();
 }
 
 Bounds Problem::bounds() const {
@@ -74,10 +79,10 @@ LawObjective::LawObjective(const Problem& problem, const Samples& samples, const
       kernel_(kernel_of(problem.model)),
       all_(problem.all()) {}
 
-std::vector<double> LawObjective::slopes(const std::vector<double>& values) const {
+std::vector<double> LawObjective::slopes(const std::vector<double>& values, std::size_t run) const {
   std::vector<double> slope(values.size(), 0.0);
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!problem_.free[i]) continue;
+    if (!problem_.is_searched(i, run)) continue;
     slope[i] = problem_.parameters[i].scale == models::Scale::logarithmic ? values[i] : 1.0;
   }
   return slope;
@@ -101,14 +106,15 @@ bool LawObjective::evaluate(const Eigen::VectorXd& at, Sums& sums) const {
     return LawPoint{.values = values[run], .slope = slope, .options = problem_.law_options};
   };
   if (samples_.runs.size() == 1) {
-    return kernel_.sums(point(0, slopes(values[0])), summed_view_of(samples_, weights_, 0), loss_, sums);
+    return kernel_.sums(point(0, slopes(values[0], 0)), summed_view_of(samples_, weights_, 0), loss_, sums);
   }
   sums.squares = 0.0;
   sums.score = Eigen::VectorXd::Zero(size());
   sums.normal = Eigen::MatrixXd::Zero(size(), size());
   Sums part;
   for (std::size_t run = 0; run < samples_.runs.size(); ++run) {
-    if (!kernel_.sums(point(run, slopes(values[run])), summed_view_of(samples_, weights_, run), loss_, part))
+    if (!kernel_.sums(point(run, slopes(values[run], run)), summed_view_of(samples_, weights_, run), loss_,
+                      part))
       return false;
     const auto places = of_run(run);
     sums.squares += part.squares;
@@ -134,14 +140,15 @@ bool LawObjective::rows(const Eigen::VectorXd& at, Eigen::VectorXd& force, Eigen
     those.only_those_that_count = true;
     return those;
   };
-  if (samples_.runs.size() == 1) return kernel_.rows(point(0, slopes(values[0])), view(0), force, jacobian);
+  if (samples_.runs.size() == 1)
+    return kernel_.rows(point(0, slopes(values[0], 0)), view(0), force, jacobian);
   jacobian.setZero();
   Eigen::Index first = 0;
   for (std::size_t run = 0; run < samples_.runs.size(); ++run) {
     const auto places = of_run(run);
     const Eigen::Index count = counted_in(samples_.runs[run].begin, samples_.runs[run].end);
     Eigen::MatrixXd part(count, static_cast<Eigen::Index>(places.size()));
-    if (!kernel_.rows(point(run, slopes(values[run])), view(run), force.segment(first, count), part))
+    if (!kernel_.rows(point(run, slopes(values[run], run)), view(run), force.segment(first, count), part))
       return false;
     for (std::size_t k = 0; k < places.size(); ++k) {
       jacobian.col(places[k]).segment(first, count) = part.col(static_cast<Eigen::Index>(k));

@@ -30,14 +30,19 @@ struct Problem {
   std::shared_ptr<ArmMemory> arm_memory{};  ///< of these samples; none: sums are made anew each time
 
   [[nodiscard]] const models::LawFacts& facts() const { return models::law_facts(model); }
-  /// How many numbers are searched: one a free parameter, or one a recording where it is its own.
-  [[nodiscard]] Eigen::Index coordinates() const;
-  /// Parameter and recording of each coordinate; the recording of one that is shared is Estimate::shared.
+  /// Parameter and recording of a coordinate; the recording of one that is shared is Estimate::shared.
   struct Coordinate {
     std::size_t parameter;
     std::size_t run;
+    friend bool operator==(const Coordinate&, const Coordinate&) = default;
   };
+  std::vector<Coordinate> held{};  ///< of one recording each, of parameters that are free and its own
+
+  /// How many numbers are searched: one a free parameter, or one a recording where it is its own.
+  [[nodiscard]] Eigen::Index coordinates() const;
   [[nodiscard]] std::vector<Coordinate> all() const;
+  /// Whether a parameter is searched in the law of a recording.
+  [[nodiscard]] bool is_searched(std::size_t parameter, std::size_t run) const;
   [[nodiscard]] Bounds bounds() const;
 };
 
@@ -69,7 +74,7 @@ class LawObjective final : public Objective {
   [[nodiscard]] const Values& near() const { return near_; }
 
  private:
-  [[nodiscard]] std::vector<double> slopes(const std::vector<double>& values) const;
+  [[nodiscard]] std::vector<double> slopes(const std::vector<double>& values, std::size_t run) const;
   /// The coordinates that move the law of a run, in the order of its parameters.
   [[nodiscard]] std::vector<Eigen::Index> of_run(std::size_t run) const;
 

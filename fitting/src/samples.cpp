@@ -125,7 +125,8 @@ void assign_folds(Samples& samples, const Run& run, std::span<const std::uint32_
   const std::uint32_t cycles = cycle.empty() ? 0 : *std::max_element(cycle.begin(), cycle.end());
   const bool by_cycle = cycles >= 2;
   const double total = static_cast<double>(by_cycle ? cycles : count);
-  const auto kept = static_cast<std::size_t>(std::ceil(total * (1.0 - options.test_share)));
+  constexpr double rounding = 1e-9;  // 10 * (1 - 0.7) is more than 3
+  const auto kept = static_cast<std::size_t>(std::ceil(total * (1.0 - options.test_share) - rounding));
   const std::size_t folds = by_cycle ? std::min(options.folds, kept) : options.folds;
   samples.folds = std::max(samples.folds, folds);
   const auto fold = samples.fold.begin() + static_cast<std::ptrdiff_t>(run.begin);

@@ -79,15 +79,50 @@ Equations equations_of(const Samples& samples, const Weights& weights, const Gri
   return equations;
 }
 
+/// What each sample weighs under a loss, where the table gives these forces.
+Weights reweighed(const Weights& weights, const Samples& samples, const std::vector<double>& force,
+                  const RobustLoss& loss) {
+  Weights robust(weights);
+  for (std::size_t i = 0; loss.kind != Loss::squares && i < force.size(); ++i) {
+    const double residual = force[i] - samples.force[i];
+    robust[i] *= loss(weights[i] * residual * residual).slope;
+  }
+  return robust;
+}
+
+/// Free air does not count; but where no row lies that does, a table is what the rows there say, and not
+/// what a straight line comes to. Those deeper than the first that counts say nothing: the tool may have been
+/// closed with nothing in it. Nor do those of a part that is held out.
+Weights with_rows_before_those(const Samples& samples, const Weights& weights) {
+  constexpr double faint = 1e-4;
+  double first = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (samples.counts[i] != 0) first = std::min(first, samples.motion[i].penetration);
+  }
+  std::vector<bool> is_shown(samples.folds, false);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (weights[i] > 0.0 && samples.fold[i] < samples.folds) is_shown[samples.fold[i]] = true;
+  }
+  Weights all(weights);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const std::uint32_t fold = samples.fold[i];
+    const bool may_be_seen = fold < samples.folds ? is_shown[fold] : fold != Samples::test;
+    const bool is_before = samples.counts[i] == 0 && samples.motion[i].penetration < first;
+    if (is_before && may_be_seen) all[i] = faint;
+  }
+  return all;
+}
+
 bool loop_of(const Problem& problem) { return std::get<bool>(problem.law_options.at("loop")); }
 
 }  // namespace
 
-Solution solve_tables(const Problem& problem, const Samples& samples, const Weights& weights,
+Solution solve_tables(const Problem& problem, const Samples& samples, const Weights& of_those_that_count,
                       const RobustLoss& loss) {
   const Grid grid(problem);
   const bool loop = loop_of(problem);
   const auto branch = branches(samples, loop);
+  const Weights weights = with_rows_before_those(samples, of_those_that_count);
   Weights robust(weights);
   Solution solution{.values = {}, .converged = true, .iterations = 0, .message = "linear least squares"};
   for (int round = 0; round < max_reweighings; ++round) {
@@ -111,21 +146,18 @@ Solution solve_tables(const Problem& problem, const Samples& samples, const Weig
     for (std::size_t i = 0; !last.empty() && i < values.size(); ++i)
       moved = std::max(moved, std::abs(values[i] - last[0][i]));
     if (moved < settled) break;
-    const auto force = rendered(problem, solution.values, samples);
-    for (std::size_t i = 0; i < force.size(); ++i) {
-      robust[i] =
-          weights[i] * loss(weights[i] * (force[i] - samples.force[i]) * (force[i] - samples.force[i])).slope;
-    }
+    robust = reweighed(weights, samples, rendered(problem, solution.values, samples), loss);
   }
   return solution;
 }
 
-std::vector<TableError> table_errors(const Problem& problem, const Samples& samples, const Weights& weights,
-                                     const std::vector<double>& values) {
+std::vector<TableError> table_errors(const Problem& problem, const Samples& samples, const Weights& given,
+                                     const std::vector<double>& values, const RobustLoss& loss) {
   const Grid grid(problem);
   const bool loop = loop_of(problem);
   const auto branch = branches(samples, loop);
   const auto force = rendered(problem, Values(problem.runs, values), samples);
+  const Weights weights = reweighed(given, samples, force, loss);
   std::vector<TableError> errors;
   for (int which = 0; which < (loop ? 2 : 1); ++which) {
     const Equations equations = equations_of(samples, weights, grid, branch, which);

@@ -19,14 +19,19 @@ std::size_t rows_of_a_drop(const Samples& samples) {
 }
 
 /// By how much the force is less in the 20 ms from a row on than in those before it, on average.
+/// Of its recording alone, whose first and last rows stand for those beyond it.
 double mean_drop(const Samples& samples, std::size_t row) {
   const std::size_t many = rows_of_a_drop(samples);
-  const auto mean = [&](std::size_t from) {
-    double sum = 0.0;
-    for (std::size_t i = from; i < from + many; ++i) sum += samples.force[std::min(i, samples.size() - 1)];
-    return sum / static_cast<double>(many);
-  };
-  return mean(row - std::min(row, many)) - mean(row);
+  const auto own = std::ranges::find_if(samples.runs, [&](const Run& run) { return row < run.end; });
+  const auto [first, end] = own == samples.runs.end() ? std::pair<std::size_t, std::size_t>(0, samples.size())
+                                                      : std::pair(own->begin, own->end);
+  double before = 0.0;
+  double after = 0.0;
+  for (std::size_t k = 0; k < many; ++k) {
+    before += samples.force[row - std::min(row - first, k + 1)];
+    after += samples.force[std::min(row + k, end - 1)];
+  }
+  return (before - after) / static_cast<double>(many);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <list>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <utility>
@@ -23,9 +24,13 @@ class TrainedMemory {
   /// for.
   [[nodiscard]] Trained once(const Weights& seen, std::size_t size, double function_tolerance,
                              const std::function<Trained()>& train);
-  /// Where the law of all samples ended. Set before folds ask.
-  void keep_whole(const Values& values) { whole_ = values; }
-  [[nodiscard]] const Values& whole() const noexcept { return whole_; }
+  /// Where a law of all samples ended, of each size by how many parameters it has. Set before folds ask.
+  void keep_whole(const Values& values) { whole_[values.at(0).size()] = values; }
+  /// That of the size of `like`; nothing where there is none.
+  [[nodiscard]] const Values* whole(const Values& like) const {
+    const auto found = like.empty() ? whole_.end() : whole_.find(like[0].size());
+    return found == whole_.end() ? nullptr : &found->second;
+  }
   /// Sums of arms over these samples.
   [[nodiscard]] const std::shared_ptr<ArmMemory>& arms() const { return arms_; }
 
@@ -48,7 +53,7 @@ class TrainedMemory {
 
   std::mutex mutex_;
   std::list<Entry> entries_;
-  Values whole_;
+  std::map<std::size_t, Values> whole_;
   std::shared_ptr<ArmMemory> arms_ = std::make_shared<ArmMemory>();
 };
 

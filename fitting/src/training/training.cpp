@@ -65,9 +65,7 @@ bool goes_on_from(const Values& whole, const Trained& law, const Samples& sample
   constexpr double not_told = 10.0;    // variances: parameters of other samples leave some more, by chance
   constexpr double elsewhere = 0.5;    // of a parameter
   const Values& found = law.solution.values;
-  if (law.problem.facts().search != models::Search::descent || whole.empty() ||
-      whole.size() != found.size() || whole[0].size() != found[0].size())
-    return false;
+  if (law.problem.facts().search != models::Search::descent || whole.size() != found.size()) return false;
   const double left = squares_of(law.problem, samples, law.weights, whole);
   if (left < (1.0 - noteworthy) * law.solution.squares) return true;
   const auto shown =
@@ -84,9 +82,17 @@ bool goes_on_from(const Values& whole, const Trained& law, const Samples& sample
   return lies_elsewhere && left <= (1.0 + not_told / shown) * law.solution.squares;
 }
 
+/// Of the samples those that all_of() gives a weight.
+std::size_t how_many_to_see(const Samples& samples) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    count += samples.counts[i] != 0 && samples.fold[i] != Samples::test ? 1 : 0;
+  return count;
+}
+
 /// A law of a given size.
 Trained train_sized(std::string_view model, const FitOptions& options, const Samples& samples, Weights seen,
-                    double function_tolerance, const TrainedMemory* memory) {
+                    double function_tolerance, TrainedMemory* memory) {
   const Polish polish = function_tolerance < of_a_fold ? Polish::thorough : Polish::brief;
   Trained law{.problem = make_problem(model, options, samples, seen, polish)};
   law.weights = std::move(seen);
@@ -113,8 +119,9 @@ Trained train_sized(std::string_view model, const FitOptions& options, const Sam
   };
   law.solution = found_by({});
   // Samples without a stroke may offer no start that leads to the least, or not tell it from another.
-  if (memory != nullptr && goes_on_from(memory->whole(), law, samples)) {
-    Solution from_whole = found_by(memory->whole());
+  const Values* const whole = memory == nullptr ? nullptr : memory->whole(law.solution.values);
+  if (whole != nullptr && goes_on_from(*whole, law, samples)) {
+    Solution from_whole = found_by(*whole);
     from_whole.iterations += law.solution.iterations;
     from_whole.rivals = std::move(law.solution.rivals);
     law.solution = std::move(from_whole);
@@ -128,6 +135,8 @@ Trained train_sized(std::string_view model, const FitOptions& options, const Sam
                 options.loss_scale_n > 0.0 ? options.loss_scale_n : loss_scale(left(), law.weights)};
     search_again();
   }
+  if (memory != nullptr && !law.solution.values.empty() && count == how_many_to_see(samples))
+    memory->keep_whole(law.solution.values);
   return law;
 }
 

@@ -70,8 +70,9 @@ std::string hardly_known(const std::string& name, const Limits& limits) {
 }
 
 void estimate_tables(FitResult& result, const Problem& problem, const Samples& samples,
-                     const Weights& weights, const Solution& solution, double confidence) {
-  const auto errors = table_errors(problem, samples, weights, solution.values[0]);
+                     const Weights& weights, const Solution& solution, double confidence,
+                     const RobustLoss& loss) {
+  const auto errors = table_errors(problem, samples, weights, solution.values[0], loss);
   std::size_t unknown = 0;
   for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
     const double value = solution.values[0][i];
@@ -132,7 +133,11 @@ class Estimation {
     std::vector<Problem::Coordinate> at_bounds;
     for (const auto& coordinate : problem_.all()) {
       if (!at_bound(problem_.parameters[coordinate.parameter], value_of(coordinate))) continue;
-      inner.free[coordinate.parameter] = false;
+      if (coordinate.run == Estimate::shared) {
+        inner.free[coordinate.parameter] = false;
+      } else {
+        inner.held.push_back(coordinate);  // that of one recording: the others' are searched
+      }
       at_bounds.push_back(coordinate);
     }
     if (inner.facts().search == models::Search::ruptures) {
@@ -333,6 +338,7 @@ class Estimation {
     if (at_zero) {
       Problem with(inner);
       with.free[coordinate.parameter] = true;
+      std::erase(with.held, coordinate);
       known.limits = limits_of_zero(with, coordinate);
       if (std::isfinite(known.limits.upper))
         warning = "'" + name + "' is zero, as far as the data tell: below " + number(known.limits.upper);
@@ -358,7 +364,8 @@ class Estimation {
 
   /// An arm of which little is known, and that is as well left away, is named as a whole.
   void name_arms() {
-    const double worth = static_cast<double>(result_.samples) / std::max(1.0, result_.correlation_time);
+    const auto seen = std::ranges::count_if(weights_, [](double weight) { return weight > 0.0; });
+    const double worth = static_cast<double>(seen) / std::max(1.0, result_.correlation_time);
     for (const Arm& arm : arms_of(problem_)) {
       const auto is_of_the_arm = [&](const Unknown& unknown) {
         return std::ranges::any_of(arm, [&](std::size_t parameter) {
@@ -407,7 +414,7 @@ void estimate_parameters(FitResult& result, const Problem& problem, const Sample
                          const Weights& weights, const Solution& solution, const FitOptions& options,
                          const RobustLoss& loss) {
   if (problem.facts().search == models::Search::tables) {
-    estimate_tables(result, problem, samples, weights, solution, options.confidence);
+    estimate_tables(result, problem, samples, weights, solution, options.confidence, loss);
   } else {
     Estimation(result, problem, samples, weights, solution, options, loss).run();
   }

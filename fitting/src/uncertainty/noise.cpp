@@ -69,10 +69,14 @@ Eigen::MatrixXd whitened(const Eigen::MatrixXd& series, const std::vector<Rows>&
   Eigen::MatrixXd white = series;
   for (const Rows& run : runs) {
     const Index first = std::min(order, run.count());
+    const auto share_left = [&](Index i) {
+      return std::sqrt(1.0 - std::pow(noise.reflections[static_cast<std::size_t>(i)], 2));
+    };
     double shrink = 1.0;
+    for (Index i = order - 1; i >= first; --i) shrink *= share_left(i);  // of a run shorter than the order
     for (Index i = first - 1; i >= 0; --i) {
       const Eigen::VectorXd a = coefficients_of(noise.reflections, i);
-      shrink *= std::sqrt(1.0 - std::pow(noise.reflections[static_cast<std::size_t>(i)], 2));
+      shrink *= share_left(i);
       white.col(run.begin + i).noalias() += series.middleCols(run.begin, i) * a.reverse();
       white.col(run.begin + i) *= shrink;
     }
@@ -250,7 +254,9 @@ double deviance(const Eigen::MatrixXd& rows, const std::vector<Rows>& runs, cons
   double first_rows = 0.0;
   for (Index i = 0; i < noise.order(); ++i) {
     const double k = noise.reflections[static_cast<std::size_t>(i)];
-    first_rows -= static_cast<double>((i + 1) * static_cast<Index>(runs.size())) * std::log1p(-k * k);
+    Index predicted_from_fewer = 0;
+    for (const Rows& run : runs) predicted_from_fewer += std::min(i + 1, run.count());
+    first_rows -= static_cast<double>(predicted_from_fewer) * std::log1p(-k * k);
   }
   const auto parameters = static_cast<double>(noise.order() + 1);
   return count * std::log(noise.innovation_variance) + pivots[r] * pivots[r] / noise.innovation_variance +

@@ -159,6 +159,7 @@ struct FitResult {
   AsRendered rendered;
   double test_rmse = 0.0;         ///< on the share that no fit saw [N]; NaN if none
   double jnd_fraction = 0.0;      ///< share of samples whose error a person could feel
+  double free_fraction = 0.0;     ///< share of the rows before the tissue whose error a person could feel
   double correlation_time = 1.0;  ///< of the residuals, in samples; the intervals allow for it
   CovarianceBy covariance_by = CovarianceBy::residuals;
   std::vector<double> correlation;    ///< matrix of the searched parameters, row by row; empty for tables
@@ -173,9 +174,12 @@ struct FitResult {
   std::string message;  ///< why it ended
   std::vector<std::string> warnings;
 
-  /// It converged, and not to something that the mean of the force explains better: what does is no answer,
-  /// however it compares with others.
-  [[nodiscard]] bool can_be_chosen() const noexcept { return converged && r2 >= 0.0; }
+  /// It converged, and neither to something that the mean of the force explains better, nor to one that is
+  /// felt most of the time where the tool is free: what does is no answer, however it compares with others.
+  [[nodiscard]] bool can_be_chosen() const noexcept {
+    return converged && r2 >= 0.0 && !is_felt_in_free_air();
+  }
+  [[nodiscard]] bool is_felt_in_free_air() const noexcept { return free_fraction > 0.5; }
 
   /// What verdicts go by: as rendered where something renders it, else as fitted.
   [[nodiscard]] double held_out_rmse() const noexcept;
