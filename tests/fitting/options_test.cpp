@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -45,6 +46,22 @@ TEST(SeveralRecordings, MayEachHaveADashpotOfTheirOwn) {
   EXPECT_NEAR(result.law(1).values()[0], 5.0, 1e-6);
   ASSERT_EQ(result.others.size(), 1U);
   EXPECT_EQ(result.others[0].recording, 1U);
+}
+
+// Friction of which one recording has none is known of the other all the same.
+TEST(SeveralRecordings, AreEachAsUncertainWhereOneLiesAtABound) {
+  const Strokes rough(3000, 0.02, Law::make("friction", std::vector{0.0, 5.0, 0.5, 0.4, 0.01}), 1);
+  const Strokes smooth(3000, 0.02, Law::make("friction", std::vector{0.0, 5.0, 0.5, 0.0, 0.01}), 2);
+  const std::array both{rough.series(), smooth.series()};
+  const auto result = fit("friction", both, {.folds = 0, .per_recording = {"coulomb"}});
+  const auto alone = fit("friction", rough.series(), {.folds = 0});
+  const Estimate& known = result.parameters[3];
+  EXPECT_EQ(known.info.name, "coulomb");
+  EXPECT_NE(known.by, IntervalBy::held);
+  EXPECT_GT(known.std_error, 0.2 * alone.parameters[3].std_error)
+      << "the other recording tells what they share";
+  EXPECT_LT(known.std_error, 1.2 * alone.parameters[3].std_error);
+  EXPECT_LT(result.others.at(0).value, 0.01);
 }
 
 TEST(SeveralRecordings, CountByTheirNoise) {
@@ -119,6 +136,51 @@ TEST(Table, IsAsUncertainAsItsNoiseMakesIt) {
     EXPECT_LT(std::abs(found.value - truth.parameters[i].value), 6.0 * found.std_error) << i;
   }
   EXPECT_GT(known, static_cast<int>(noisy.parameters.size()) / 2);
+}
+
+TEST(Table, IsLessUncertainUnderALossThatForgives) {
+  Strokes strokes(6000, 0.01, Law::make("exponential", std::vector{1.0, 2.0, 1e-6}));
+  for (std::size_t i = 0; i < strokes.force.size(); i += 25) strokes.force[i] += i % 2 == 0 ? 5.0 : -5.0;
+  const auto errors_of = [&](Loss loss) {
+    std::vector<double> errors;
+    for (const Estimate& one : fit("recording", strokes.series(), {.folds = 0, .loss = loss}).parameters)
+      errors.push_back(one.std_error);
+    std::ranges::nth_element(errors, errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2));
+    return errors[errors.size() / 2];
+  };
+  EXPECT_LT(errors_of(Loss::cauchy), 0.1 * errors_of(Loss::squares));
+}
+
+// A tool that comes from 0.1 m above the tissue: of its force nothing counts before it is felt.
+TEST(Table, IsFreeWhereNothingIsFelt) {
+  Strokes strokes(6000, 0.02, Law::make("exponential", std::vector{0.05, 1.2, 1e-6}));
+  std::vector<std::uint8_t> counts;
+  for (std::size_t i = 0; i < strokes.force.size(); ++i) {
+    const bool is_free = strokes.penetration[i] < 0.2;
+    if (is_free) strokes.force[i] = i % 2 == 0 ? 0.02 : -0.02;
+    counts.push_back(is_free ? 0 : 1);
+  }
+  Series series = strokes.series();
+  series.counts = counts;
+  const auto found = fit("recording", series, {.folds = 0});
+  EXPECT_LT(std::abs(found.parameters.front().value), 0.02);
+  EXPECT_LT(std::abs(found.parameters[20].value), 0.02);
+  EXPECT_LT(found.free_fraction, 0.05) << "at its edge";
+}
+
+// The line through what is felt of a tissue that stiffens pulls where the tool is free.
+TEST(Choice, LeavesOutALawThatIsFeltInFreeAir) {
+  Strokes strokes(6000, 0.002, Law::make("exponential", std::vector{0.01, 1.5, 1e-6}));
+  std::vector<std::uint8_t> counts;
+  for (const double force : strokes.force) counts.push_back(force > 0.05 ? 1 : 0);
+  Series series = strokes.series(true);
+  series.counts = counts;
+  const FitOptions options{.law_options = {{"segments", 1.0}}};
+  const std::array results{fit("piecewise", series, options), fit("exponential", series, {})};
+  EXPECT_GT(results[0].free_fraction, 0.5);
+  EXPECT_GE(results[0].r2, 0.0);
+  EXPECT_FALSE(results[0].can_be_chosen());
+  EXPECT_EQ(choose_simplest(results, series, {}).model, "exponential");
 }
 
 TEST(Table, SettlesUnderALossThatForgives) {

@@ -45,7 +45,7 @@ TEST(Deviance, IsThatOfTheWholeCovarianceMatrix) {
   std::mt19937_64 random(2);
   std::normal_distribution<double> normal;
   const auto drawn = [&] { return normal(random); };
-  const std::vector<Rows> runs{{0, 25}, {25, 60}};
+  const std::vector<Rows> runs{{0, 25}, {25, 58}, {58, 60}};  // the last is shorter than what is remembered
   const Eigen::MatrixXd columns = Eigen::MatrixXd::NullaryExpr(60, 2, drawn);
   const Eigen::MatrixXd q =
       Eigen::HouseholderQR<Eigen::MatrixXd>(columns).householderQ() * Eigen::MatrixXd::Identity(60, 2);
