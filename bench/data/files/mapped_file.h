@@ -9,7 +9,11 @@
 
 namespace kerf::bench {
 
-/// A file's content in memory while the object lives: mapped for reading, or read where it is a pipe.
+struct WatchedMapping;
+
+/// A file's content in memory while the object lives: mapped for reading, or read where it is a pipe. What
+/// cannot be read any more, because somebody makes the file shorter or its disk fails, is zeros; to the first
+/// mapping of a process a handler of SIGBUS belongs, which passes on what is none of theirs.
 class MappedFile {
  public:
   /// @throws as NamedFile does, and for what holds more than `at_most` bytes; std::system_error if it cannot
@@ -24,6 +28,8 @@ class MappedFile {
     return begin_ == nullptr ? std::string_view(piped_)
                              : std::string_view(static_cast<const char*>(begin_), size_);
   }
+  /// Whether a part of it that was looked at could not be read any more.
+  [[nodiscard]] bool is_damaged() const noexcept;
   /// Lets go of the memory of a part that has been looked at, of text(); it is read again where it is asked
   /// for.
   void let_go_of(std::string_view part) const noexcept;
@@ -31,6 +37,7 @@ class MappedFile {
  private:
   void* begin_ = nullptr;
   std::size_t size_ = 0;
+  WatchedMapping* watched_ = nullptr;
   std::string piped_;
 };
 

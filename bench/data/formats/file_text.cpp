@@ -72,4 +72,10 @@ FileText::FileText(const std::filesystem::path& file, const FileTextOptions& opt
   }
 }
 
+void FileText::require_whole() const {
+  if (mapped_.is_damaged())
+    throw std::invalid_argument(
+        fmt::format("{}: it became shorter while it was read; try again when it has been written", name_));
+}
+
 }  // namespace kerf::bench

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <system_error>
@@ -39,11 +40,17 @@ class XlsCopy {
   int file_;
 };
 
+struct CloseBook {
+  void operator()(const void* book) const { freexl_close(book); }
+};
+
 class XlsBook {
  public:
   XlsBook(std::string_view bytes, const UnpackedLimits& limits)
       : copy_(bytes), limits_(limits), records_(biff_sheets(bytes)) {
-    const int opened = freexl_open(copy_.path().c_str(), &book_);
+    const void* book = nullptr;
+    const int opened = freexl_open(copy_.path().c_str(), &book);
+    book_.reset(book);
     if (opened == FREEXL_BIFF_WORKBOOK_NOT_FOUND) refuse("an old Office file, but no workbook (xls)");
     // An encrypted file is opened without its cells, or not at all.
     if (opened != FREEXL_OK)
@@ -54,18 +61,12 @@ class XlsBook {
     records_.resize(info(FREEXL_BIFF_SHEET_COUNT));
     for (std::size_t i = 0; i < records_.size(); ++i) {
       const char* name = nullptr;
-      const int told = freexl_get_worksheet_name(book_, static_cast<unsigned short>(i), &name);
+      const int told = freexl_get_worksheet_name(book_.get(), static_cast<unsigned short>(i), &name);
       sheets_.push_back(
           {.name = told == FREEXL_OK && name != nullptr ? name : "", .hidden = records_[i].hidden});
     }
     if (sheets_.empty()) refuse("a workbook without a sheet");
   }
-  XlsBook(const XlsBook&) = delete;
-  XlsBook& operator=(const XlsBook&) = delete;
-  ~XlsBook() {
-    if (book_ != nullptr) freexl_close(book_);
-  }
-
   Sheet sheet(const std::string& asked) {
     return taken_sheet(sheets_, asked, limits_.name,
                        [&](std::size_t place, CellCounts& counts) { return read(place, counts); });
@@ -78,15 +79,15 @@ class XlsBook {
 
   [[nodiscard]] unsigned int info(unsigned short what) const {
     unsigned int value = 0;
-    return freexl_get_info(book_, what, &value) == FREEXL_OK ? value : 0;
+    return freexl_get_info(book_.get(), what, &value) == FREEXL_OK ? value : 0;
   }
 
   Sheet read(std::size_t place, CellCounts& counts) {
     const std::string& name = sheets_[place].name;
     unsigned int rows = 0;
     unsigned short columns = 0;
-    if (freexl_select_active_worksheet(book_, static_cast<unsigned short>(place)) != FREEXL_OK ||
-        freexl_worksheet_dimensions(book_, &rows, &columns) != FREEXL_OK)
+    if (freexl_select_active_worksheet(book_.get(), static_cast<unsigned short>(place)) != FREEXL_OK ||
+        freexl_worksheet_dimensions(book_.get(), &rows, &columns) != FREEXL_OK)
       refuse(fmt::format("sheet '{}' cannot be read: is the file whole?", name));
     std::vector<SheetRow> taken;
     std::size_t width = 0;
@@ -109,7 +110,7 @@ class XlsBook {
   std::string value_of(const BiffSheet& records, unsigned int row, unsigned short column,
                        CellCounts& counts) const {
     FreeXL_CellValue value{};
-    if (freexl_get_cell_value(book_, row, column, &value) != FREEXL_OK) return "";
+    if (freexl_get_cell_value(book_.get(), row, column, &value) != FREEXL_OK) return "";
     const auto found = records.cells.find({static_cast<std::uint16_t>(row), column});
     if (found != records.cells.end()) {
       const BiffCell& cell = found->second;
@@ -137,7 +138,7 @@ class XlsBook {
   XlsCopy copy_;
   const UnpackedLimits& limits_;
   std::vector<BiffSheet> records_;
-  const void* book_ = nullptr;
+  std::unique_ptr<const void, CloseBook> book_;
   bool epoch_1904_ = false;
   std::vector<SheetName> sheets_;
 };

@@ -100,11 +100,13 @@ Unit unit_for(const MapEntry& entry, const TextColumn& column, const std::string
   const auto kinds = kinds_of(entry.channel);
   if (text.empty() && !column.unknown_unit.empty()) {
     const bool is_raw = is_raw_unit(column.unknown_unit);
+    const char* const what = has_factor(column.unknown_unit)
+                                 ? "which may mean its numbers times or by a factor"
+                                 : "which is no unit known here";
     throw std::invalid_argument(fmt::format(
-        "{}: column '{}' for {} is in {} as the file says, which is no unit known here; say {}: {}={}[{} {}]",
-        name, entry.column, entry.channel, column.unknown_unit,
-        is_raw ? "how many are one" : "what one of it is", entry.channel, entry.column,
-        is_raw ? "counts/1000" : "0.001", kinds.empty() ? "1" : kinds.front()));
+        "{}: column '{}' for {} is in {} as the file says, {}; say {}: {}={}[{} {}]", name, entry.column,
+        entry.channel, column.unknown_unit, what, is_raw ? "how many are one" : "what one of it is",
+        entry.channel, entry.column, is_raw ? "counts/1000" : "0.001", kinds.empty() ? "1" : kinds.front()));
   }
   if (text.empty()) {
     throw std::invalid_argument(fmt::format(

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <future>
 #include <span>
@@ -94,6 +95,27 @@ void require_stamps_for_time(const TextLayout& layout, const std::vector<MappedC
   }
 }
 
+/// Times that count since 1970 say when the first row was; `start` is its time less the origin.
+void take_moment(Imported& imported, std::int64_t origin, double start, double unit_s) {
+  constexpr double begin_of_2000_s = 946'684'800.0;
+  constexpr double begin_of_2050_s = 2'524'608'000.0;
+  constexpr double longest_clock_s = 10.0 * 365.25 * 86400.0;
+  const double units_ns = unit_s * ns_of_second;
+  const auto whole_ns = units_ns < 2.0 * ns_of_second ? std::llround(units_ns) : 0;
+  const bool is_whole = whole_ns >= 1 && std::abs(units_ns - static_cast<double>(whole_ns)) < 1e-6 * units_ns;
+  const double first_row_s = imported.first_time_s;
+  if (origin != 0 && is_whole && first_row_s >= begin_of_2000_s && first_row_s < begin_of_2050_s) {
+    imported.recording.header.start_ns =
+        origin * whole_ns + std::llround(start * static_cast<double>(whole_ns));
+    imported.recording.header.start_clock = "UTC";
+  } else if (std::abs(first_row_s) > longest_clock_s) {
+    imported.warnings.push_back(fmt::format(
+        "the time begins at {:.6g} s, which is no moment of 2000 to 2050 as counted since 1970: when "
+        "this was is not known; is the unit of time right?",
+        first_row_s));
+  }
+}
+
 void take_time(Imported& imported, MappedRows& rows, const std::string& name, const ImportOptions& options) {
   auto& time = imported.recording.time;
   const MappedColumn* column = find_channel(imported.columns, "time");
@@ -104,6 +126,9 @@ void take_time(Imported& imported, MappedRows& rows, const std::string& name, co
       throw std::invalid_argument(fmt::format(
           "{}: --map maps no time; map one, or give --rate HZ for samples at a uniform rate", name));
     }
+    if (!std::isfinite(options.rate_hz))
+      throw std::invalid_argument(
+          "--rate is infinite; expected how many rows are a second, as in --rate 1000");
     if (options.stretch > 0)
       throw std::invalid_argument("--stretch is of a time that --map takes from a column");
     for (std::size_t row = 0; row < rows.size(); ++row)
@@ -126,7 +151,9 @@ void take_time(Imported& imported, MappedRows& rows, const std::string& name, co
     for (double& t : time) t = (t - start) / ns_of_second;
     return;
   }
-  imported.first_time_s = start * column->unit.factor;
+  const std::int64_t origin = imported.layout.columns[column->index].origin;
+  imported.first_time_s = (static_cast<double>(origin) + start) * column->unit.factor;
+  take_moment(imported, origin, start, column->unit.factor);
   for (double& t : time) t = (t - start) * column->unit.factor;
 }
 
@@ -186,6 +213,7 @@ struct ReadFile {
     options.progress("importing", file.text().size(), [&](std::atomic<std::size_t>& done) {
       table = parse_table(file.text(), layout, indices, done);
     });
+    file.require_whole();
     require_no_groups(file.text(), layout, columns, table, file.name());
     seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     hash = std::async(std::launch::async, [this] { return sha256_of(file.bytes()); }).share();
@@ -224,6 +252,7 @@ void write_header(schema::Recording& recording, const ReadFile& read, const std:
   recording.header.device_properties = found.device_properties;
   const std::string file = read.path.filename().string();
   recording.header.source = fmt::format("{} sha256:{}", file, read.hash.get());
+  read.file.require_whole();
   std::string how;
   if (!trial.empty()) how += fmt::format(", trial '{}'", trial);
   if (options.stretch > 0) how += fmt::format(", stretch {}", options.stretch);
@@ -249,7 +278,7 @@ Imported recording_of(const ReadFile& read, TextTable table, const std::string& 
   imported.columns = read.columns;
   imported.spatial = read.spatial;
   imported.parse_seconds = read.seconds;
-  MappedRows rows(std::move(table), imported.columns);
+  MappedRows rows(std::move(table), imported.columns, imported.layout);
   imported.bad_lines = rows.bad_lines();
   if (rows.size() == 0) refuse_without_rows(read.file.text(), imported.layout, imported.columns, name);
   if (options.strict && !imported.bad_lines.empty()) {

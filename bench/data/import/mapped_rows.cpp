@@ -11,9 +11,15 @@
 
 namespace kerf::bench {
 
-MappedRows::MappedRows(TextTable table, const std::vector<MappedColumn>& columns) : table_(std::move(table)) {
+MappedRows::MappedRows(TextTable table, const std::vector<MappedColumn>& columns, const TextLayout& layout)
+    : table_(std::move(table)) {
   for (std::size_t i = 0; i < columns.size(); ++i) {
-    if (columns[i].unit.factor == 1.0 || columns[i].channel == "time") continue;
+    if (columns[i].channel == "time") continue;
+    const auto origin = static_cast<double>(layout.columns[columns[i].index].origin);
+    if (origin != 0.0) {
+      for (double& value : table_.columns[i]) value += origin;
+    }
+    if (columns[i].unit.factor == 1.0) continue;
     for (double& value : table_.columns[i]) value *= columns[i].unit.factor;
     if (columns[i].unit.offset == 0.0) continue;
     for (double& value : table_.columns[i]) value += columns[i].unit.offset;

@@ -9,11 +9,11 @@
 
 namespace kerf::bench {
 
-/// The table's numbers in the order of the mapped columns, in SI but for the time, and the lines they came
-/// from.
+/// The table's numbers in the order of the mapped columns, in SI but for the time, which is counted from the
+/// origin of its column, and the lines they came from.
 class MappedRows {
  public:
-  MappedRows(TextTable table, const std::vector<MappedColumn>& columns);
+  MappedRows(TextTable table, const std::vector<MappedColumn>& columns, const TextLayout& layout);
 
   [[nodiscard]] std::size_t size() const { return table_.columns.front().size(); }
   [[nodiscard]] std::vector<double>& column(std::size_t i) { return table_.columns[i]; }

@@ -37,6 +37,9 @@ class Suggestion {
     for (const auto& entry : entries_) {
       if (!entry.empty()) suggested_.map += (suggested_.map.empty() ? "" : ",") + entry;
     }
+    if (!guesses_.empty())
+      suggested_.remarks.push_back(fmt::format(
+          "the file says no unit where the map has {}: a guess, to be set right by who knows it", guesses_));
     if (!has_time) suggest_rate();
     return std::move(suggested_);
   }
@@ -49,15 +52,38 @@ class Suggestion {
       entry_of(channel) = fmt::format("{}={}", channel, column + 1);
       return true;
     }
-    // How many of these are one unit nobody but the lab knows.
-    const bool is_known = of.unknown_unit.empty() || unit.starts_with('?');
-    const char* const how_many = is_known ? "" : is_raw_unit(of.unknown_unit) ? "counts/? " : "? ";
-    if (!is_known && !is_raw_unit(of.unknown_unit))
-      suggested_.remarks.push_back(
-          fmt::format("column {} is in {}, which is no unit known here: write for ? how many {} one of it is",
-                      column + 1, of.unknown_unit, unit));
-    entry_of(channel) = fmt::format("{}={}[{}{}]", channel, column + 1, how_many, unit);
+    entry_of(channel) =
+        fmt::format("{}={}[{}{}]", channel, column + 1, how_many_are_one(column, channel, unit), unit);
     return true;
+  }
+
+  /// What stands before a unit of which nobody but the lab knows how many of the file's numbers are one; says
+  /// why, and where a unit is a guess.
+  const char* how_many_are_one(std::size_t column, std::string_view channel, std::string_view unit) {
+    const std::string& unknown = layout_.columns[column].unknown_unit;
+    const auto say = [&](const std::string& what) { suggested_.remarks.push_back(what); };
+    if (unit.starts_with('?') || is_raw_unit(unknown)) return unit.starts_with('?') ? "" : "counts/? ";
+    if (!unknown.empty()) {
+      say(has_factor(unknown)
+              ? fmt::format(
+                    "column {} is in {} as its heading says, a factor of which nobody can tell whether it "
+                    "was applied: write for ? how many {} a 1 in the file is",
+                    column + 1, unknown, unit)
+              : fmt::format(
+                    "column {} is in {}, which is no unit known here: write for ? how many {} one of it is",
+                    column + 1, unknown, unit));
+      return "? ";
+    }
+    if (!layout_.columns[column].unit.empty()) return "";
+    if (facts_[column].are_whole && channel != "time") {
+      say(fmt::format(
+          "column {} has whole numbers of a thousand and more and no unit, as raw counts have: write "
+          "for ? how many are one {}",
+          column + 1, unit));
+      return "counts/? ";
+    }
+    guesses_ += fmt::format("{}{} of column {}", guesses_.empty() ? "" : ", ", unit, column + 1);
+    return "";
   }
 
   std::string& entry_of(std::string_view channel) {
@@ -186,6 +212,7 @@ class Suggestion {
   std::vector<ColumnFacts> facts_;
   std::vector<bool> taken_;
   std::array<std::string, 3> entries_;  // time, position, force
+  std::string guesses_;                 // units that the file does not say
   SuggestedMap suggested_;
 };
 

@@ -1,5 +1,7 @@
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <iconv.h>
 
@@ -38,11 +40,23 @@ bool looks_like_gb(std::string_view text) noexcept {
   return true;
 }
 
-}  // namespace
+/// Japanese text, or Chinese of more characters than GB 2312 has, stands in words: two characters of two
+/// bytes side by side, of which the first begins with a byte that is no Latin letter.
+bool has_wide_word(std::string_view text) noexcept {
+  const auto byte = [&](std::size_t at) {
+    return static_cast<unsigned char>(at < text.size() ? text[at] : 0);
+  };
+  const auto is_pair = [&](std::size_t at) {
+    return byte(at) >= 0x81 && byte(at + 1) >= 0x40 && byte(at + 1) != 0x7F;
+  };
+  for (std::size_t i = 0; i < text.size(); i += byte(i) < 0x80 ? 1 : 2) {
+    if (byte(i) < 0xA0 && is_pair(i) && is_pair(i + 2)) return true;
+  }
+  return false;
+}
 
-std::string to_utf8(std::string_view text) {
-  if (is_utf8(text)) return std::string(text);
-  const iconv_t converter = iconv_open("UTF-8", looks_like_gb(text) ? "GB18030" : "ISO-8859-1");
+std::optional<std::string> recoded(std::string_view text, const char* encoding) {
+  const iconv_t converter = iconv_open("UTF-8", encoding);
   std::string in(text);
   std::string out(4 * text.size(), '\0');
   char* from = in.data();
@@ -51,11 +65,23 @@ std::string to_utf8(std::string_view text) {
   std::size_t to_left = out.size();
   const auto failed = iconv(converter, &from, &from_left, &to, &to_left) == static_cast<std::size_t>(-1);
   iconv_close(converter);
-  out.resize(failed ? 0 : out.size() - to_left);
-  if (failed) {
-    for (const char c : text) out += static_cast<unsigned char>(c) < 0x80 ? c : '?';
-  }
+  if (failed) return std::nullopt;
+  out.resize(out.size() - to_left);
   return out;
+}
+
+}  // namespace
+
+std::string to_utf8(std::string_view text) {
+  if (is_utf8(text)) return std::string(text);
+  std::vector<const char*> encodings;
+  if (looks_like_gb(text)) encodings = {"GB18030"};
+  if (has_wide_word(text)) encodings = {"CP932", "GB18030"};
+  encodings.push_back("CP1252");
+  for (const char* const encoding : encodings) {
+    if (auto whole = recoded(text, encoding)) return *whole;
+  }
+  return *recoded(text, "ISO-8859-1");  // in which every byte is a character
 }
 
 }  // namespace kerf::bench

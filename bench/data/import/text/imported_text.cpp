@@ -64,9 +64,11 @@ std::vector<std::string> imported_lines(const Imported& imported) {
                                   start_text(imported.recording.header)));
       continue;
     }
-    lines.push_back(fmt::format("{}: column {}{}, in {}{}", column.channel, column.index + 1,
+    const bool says_start = column.channel == "time" && imported.recording.header.start_ns;
+    lines.push_back(fmt::format("{}: column {}{}, in {}{}{}", column.channel, column.index + 1,
                                 heading.empty() ? "" : fmt::format(" '{}'", heading), column.unit_text,
-                                column.unit_from_file ? " as the file says" : ""));
+                                column.unit_from_file ? " as the file says" : "",
+                                says_start ? "; time 0 is " + start_text(imported.recording.header) : ""));
   }
   if (imported.spatial) lines.push_back(spatial_text(*imported.spatial, {}));
   return lines;

@@ -125,6 +125,12 @@ class FilledLines {
     --left_;
     skip_empty();
   }
+  /// Passes over remarks below a line that names all columns; stays where there is none above them.
+  void go_up_to_names(std::size_t width) {
+    const std::size_t last = left_;
+    while (!is_empty() && !names_all(fields(), width) && is_comment(preamble_[left_ - 1])) go_up();
+    if (is_empty() || !names_all(fields(), width)) left_ = last;
+  }
 
  private:
   void skip_empty() {
@@ -141,6 +147,7 @@ HeaderLine read_header(TextLayout& layout, std::span<const std::string_view> pre
   layout.columns.resize(width);
   if (const HeaderLine said = read_said_columns(layout, preamble, width); said.number > 0) return said;
   FilledLines lines(preamble, layout.separator);
+  lines.go_up_to_names(width);
   if (lines.is_empty()) return {};
   FilledLines above = lines;
   above.go_up();

@@ -1,11 +1,16 @@
 #include "import/text/text_layout.h"
 
 #include <algorithm>
+#include <charconv>
+#include <span>
 #include <stdexcept>
+#include <system_error>
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include "files/trimmed.h"
+#include "import/decimal.h"
 #include "import/text/no_table.h"
 #include "import/text/reading.h"
 #include "import/text/text_header.h"
@@ -18,16 +23,31 @@ constexpr std::size_t sampled_data_lines = 50;
 
 bool is_blank(char c) noexcept { return c == ' ' || c == '\t' || c == '\r'; }
 
-/// Which columns hold time stamps, by the first line of the data.
-void find_stamps(TextLayout& layout, std::string_view line) {
+/// Which columns hold time stamps or long numbers, by the first line of the data.
+void find_origins(TextLayout& layout, std::string_view line) {
+  constexpr std::int64_t least = 1'000'000'000;
   const auto fields = split_line(line, layout.separator);
   for (std::size_t i = 0; i < std::min(fields.size(), layout.columns.size()); ++i) {
     TimeStamp stamp;
-    if (!is_time_stamp(fields[i], stamp)) continue;
+    if (!is_time_stamp(fields[i], stamp)) {
+      std::int64_t whole = 0;
+      const auto read = std::from_chars(fields[i].data(), fields[i].data() + fields[i].size(), whole);
+      if (read.ec == std::errc{} && whole >= least) layout.columns[i].origin = whole;
+      continue;
+    }
     layout.columns[i].stamps = stamp;
     layout.columns[i].unit = "s";
     layout.columns[i].unknown_unit.clear();
   }
+}
+
+/// The lines in UTF-8: all together tell their encoding better than one name does.
+std::vector<std::string> as_utf8(std::span<const std::string_view> lines) {
+  const std::string text = to_utf8(fmt::format("{}", fmt::join(lines, "\n")));
+  std::string_view rest = text;
+  std::vector<std::string> converted;
+  for (std::size_t i = 0; i < lines.size(); ++i) converted.emplace_back(take_line(rest));
+  return converted;
 }
 
 }  // namespace
@@ -38,6 +58,12 @@ std::string_view take_line(std::string_view& rest) noexcept {
   rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
   while (!line.empty() && line.back() == '\r') line.remove_suffix(1);
   return line;
+}
+
+bool is_comment(std::string_view line) noexcept {
+  line = trimmed(line);
+  if (line.starts_with('"')) line.remove_prefix(1);
+  return line.starts_with('#') || line.starts_with('%');
 }
 
 std::vector<std::string_view> split_line(std::string_view line, char separator) {
@@ -75,6 +101,12 @@ std::vector<std::string_view> split_line(std::string_view line, char separator) 
     ++at;
   }
   return fields;
+}
+
+bool names_all(const std::vector<std::string_view>& fields, std::size_t columns) {
+  return fields.size() == columns && std::ranges::none_of(fields, [](std::string_view field) {
+           return trimmed(field).empty() || is_decimal(field, '.') || is_decimal(field, ',');
+         });
 }
 
 TextLayout find_layout(std::string_view text, const std::string& name) {
@@ -121,8 +153,10 @@ TextLayout find_layout(std::string_view text, const std::string& name) {
       std::any_of(first, lines.end(), [](auto line) { return line.find('"') != std::string_view::npos; });
   auto width = split_line(*first, layout.separator).size();
   if (split_line(*first, layout.separator).back().empty() && width > 1) --width;  // a separator ends the line
-  const HeaderLine header = read_header(layout, {lines.data(), layout.preamble_lines}, width);
-  find_stamps(layout, *first);
+  const std::vector<std::string> preamble = as_utf8({lines.data(), layout.preamble_lines});
+  const std::vector<std::string_view> said(preamble.begin(), preamble.end());
+  const HeaderLine header = read_header(layout, said, width);
+  find_origins(layout, *first);
   for (auto line = first; line != lines.end(); ++line) {
     const auto number = static_cast<std::size_t>(line - lines.begin()) + 1;
     if (reading.reads(*line))

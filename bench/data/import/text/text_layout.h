@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -22,6 +23,10 @@ struct TextColumn {
   std::string unknown_unit;
   /// Of a column of time stamps the first one; its unit is s whatever its name says.
   std::optional<TimeStamp> stamps;
+  /// Of a column of numbers of ten digits and more, as moments since 1970 are, the whole part of its first
+  /// one: what parse_table() reads are the differences from it, which a double holds where it rounds the
+  /// number.
+  std::int64_t origin = 0;
 };
 
 /// How a text file of numbers is laid out, found by looking at its first lines.
@@ -44,8 +49,14 @@ struct TextLayout {
 /// Splits a line into its fields: blanks around them and quotes taken off.
 [[nodiscard]] std::vector<std::string_view> split_line(std::string_view line, char separator);
 
+/// Whether fields are a name for each of so many columns, none of them empty or a number, as headers have it.
+[[nodiscard]] bool names_all(const std::vector<std::string_view>& fields, std::size_t columns);
+
 /// Text in UTF-8, GB 18030 or Latin-1 to UTF-8.
 [[nodiscard]] std::string to_utf8(std::string_view text);
+
+/// Whether a line says of itself that it is a remark: it begins with # or %.
+[[nodiscard]] bool is_comment(std::string_view line) noexcept;
 
 /// Takes the next line, without its line end, off `rest`.
 [[nodiscard]] std::string_view take_line(std::string_view& rest) noexcept;

@@ -1,8 +1,10 @@
 #include "import/text/text_table.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cstdint>
 #include <cstring>
+#include <system_error>
 #include <thread>
 
 #include "import/decimal.h"
@@ -33,8 +35,10 @@ class LineReader {
       if (const int slot = slots_[field]; slot != not_wanted) {
         double value = 0.0;
         const auto& stamps = layout_->columns[field].stamps;
-        const char* const stop = stamps ? read_stamp(at, end, quoted ? '"' : separator, *stamps, value)
-                                        : parse_decimal(at, end, layout_->point, value);
+        const std::int64_t origin = layout_->columns[field].origin;
+        const char* const stop = stamps        ? read_stamp(at, end, quoted ? '"' : separator, *stamps, value)
+                                 : origin != 0 ? read_difference(at, end, origin, value)
+                                               : parse_decimal(at, end, layout_->point, value);
         if (stop == at) return false;
         values[static_cast<std::size_t>(slot)][row] = value;
         at = stop;
@@ -70,6 +74,24 @@ class LineReader {
     const char* const stop = parse_time_stamp(at, end, separator, stamp);
     if (stop == at || stamp.has_zone != first.has_zone) return at;
     value = static_cast<double>(stamp.ns - first.ns);
+    return stop;
+  }
+  /// Whole part and fraction each by itself: 64 bits hold the one, and a double the other.
+  const char* read_difference(const char* at, const char* end, std::int64_t origin,
+                              double& value) const noexcept {
+    const char* const stop = parse_decimal(at, end, layout_->point, value);
+    std::int64_t whole = 0;
+    const auto read = std::from_chars(at, stop, whole);
+    double fraction = 0.0;
+    const bool is_split = read.ec == std::errc{} && whole >= 0 &&
+                          (read.ptr == stop || *read.ptr == layout_->point) &&
+                          std::find_if(read.ptr, stop, [](char c) { return c == 'e' || c == 'E'; }) == stop;
+    if (!is_split) {
+      value -= static_cast<double>(origin);
+      return stop;
+    }
+    if (stop - read.ptr > 1) parse_decimal(read.ptr, stop, layout_->point, fraction);
+    value = static_cast<double>(whole - origin) + fraction;
     return stop;
   }
   static const char* skip_field(const char* at, const char* end, char stop) noexcept {

@@ -26,8 +26,8 @@ struct TextTable {
 /// `layout.data_begin` on, on all cores. A line is bad if one of them is missing or is not a number; other
 /// fields may hold anything. Of a column of time stamps the values are nanoseconds
 /// since its first one, exact for 104 days, and a line is bad if its stamp has a zone where the first has
-/// none, or none where the first has one. `bytes_done` grows to the size of the text while it is read, for a
-/// progress bar.
+/// none, or none where the first has one. Of a column with an origin they are the differences from it.
+/// `bytes_done` grows to the size of the text while it is read, for a progress bar.
 [[nodiscard]] TextTable parse_table(std::string_view text, const TextLayout& layout,
                                     std::span<const std::size_t> columns,
                                     std::atomic<std::size_t>& bytes_done);

@@ -52,6 +52,10 @@ bool is_known_unit(std::string_view text) {
 
 bool is_raw_unit(std::string_view text) { return is_one_of(raw_words, in_small_letters(trimmed(text))); }
 
+bool has_factor(std::string_view unknown_unit) {
+  return unknown_unit.find_first_of("0123456789") != std::string_view::npos;
+}
+
 bool looks_like_unit(std::string_view text) {
   constexpr std::size_t longest = 12;
   text = trimmed(text);
@@ -62,6 +66,10 @@ bool looks_like_unit(std::string_view text) {
   if (std::ranges::any_of(text, [](char c) { return c == ' ' || c == '=' || c == ','; })) return false;
   if (std::ranges::any_of(text, [](char c) { return c == '%' || c == '^' || c == '/'; })) return true;
   if (text.find("µ") == 0 || text.find("°") == 0 || text.find("\u03bc") == 0) return true;
+  // "æm": a micrometre whose letter another encoding has spoiled.
+  const auto ascii = std::ranges::find_if(text, [](char c) { return static_cast<unsigned char>(c) < 0x80; });
+  if (ascii != text.begin() && is_known_unit(text.substr(static_cast<std::size_t>(ascii - text.begin()))))
+    return true;
   if (!std::ranges::all_of(text, is_letter)) return false;
   if (text.size() <= 2) return true;
   // "mNM", "kPA": a capital behind a small letter.

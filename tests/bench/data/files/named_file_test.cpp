@@ -2,6 +2,7 @@
 
 #include <array>
 #include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
@@ -43,6 +44,40 @@ TEST(NamedFile, HoldsWhatStandsInIt) {
   test::write_text(folder / "empty", "");
   EXPECT_EQ(read_named_file(folder / "empty"), "");
   EXPECT_EQ(MappedFile(folder / "empty").text(), "");
+}
+
+TEST(MappedFile, IsZerosWhereTheFileBecameShorter) {
+  const test::TemporaryFolder folder;
+  const std::string content(100'000, 'x');
+  test::write_text(folder / "x", content);
+  test::write_text(folder / "y", content);
+  const MappedFile mapped(folder / "x");
+  const MappedFile other(folder / "y");
+  EXPECT_EQ(mapped.text(), content);
+  fs::resize_file(folder / "x", 10'000);
+  EXPECT_EQ(mapped.text().substr(0, 10'000), content.substr(0, 10'000));
+  EXPECT_FALSE(mapped.is_damaged()) << "nobody looked there";
+  EXPECT_EQ(mapped.text().back(), '\0');
+  EXPECT_TRUE(mapped.is_damaged());
+  EXPECT_EQ(other.text(), content);
+  EXPECT_FALSE(other.is_damaged());
+  // A place that another file had before.
+  const MappedFile again(folder / "y");
+  EXPECT_FALSE(again.is_damaged());
+}
+
+TEST(MappedFileDeathTest, LeavesBusErrorsOfOthersAsTheyWere) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const test::TemporaryFolder folder;
+  test::write_text(folder / "x", "1");
+  const MappedFile mapped(folder / "x");
+  // The first is passed on to nobody, which makes the second what it would have been.
+  EXPECT_DEATH(
+      {
+        (void)raise(SIGBUS);
+        (void)raise(SIGBUS);
+      },
+      "");
 }
 
 /// A pipe as a shell hands it over.

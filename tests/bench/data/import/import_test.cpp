@@ -1,6 +1,8 @@
 #include "import/import.h"
 
 #include <cmath>
+#include <cstddef>
+#include <filesystem>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -13,10 +15,12 @@
 namespace kerf::bench {
 namespace {
 
+using testing::Contains;
 using testing::DoubleEq;
 using testing::DoubleNear;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 Imported imported(const std::string& text, ImportOptions options = {},
                   const std::string& map = "time=1[s],position=2[mm],force=3[mN]") {
@@ -53,6 +57,24 @@ TEST(Import, DerivesTheVelocityAndSaysSo) {
       imported("0,1,0\n1,2,0\n2,3,0\n", {}, "time=1[s],position=2[mm],velocity=2[mm*1/s]").recording;
   EXPECT_THAT(given.velocity, ElementsAre(DoubleEq(1e-3), DoubleEq(2e-3), DoubleEq(3e-3)));
   EXPECT_EQ(given.header.velocity_derived, "");
+}
+
+TEST(Import, RefusesAFileThatBecomesShorterMeanwhile) {
+  const test::TemporaryFolder folder;
+  const auto file = folder / "data.txt";
+  test::write_text(file, table(200'000, [](int i) { return std::to_string(i) + ",1,2"; }));
+  ImportOptions options;
+  options.map = parse_map("time=1[s],position=2[mm],force=3[mN]");
+  options.progress = [&](const std::string& label, std::size_t total, const CountedWork& work) {
+    std::filesystem::resize_file(file, 1'000'000);
+    show_no_progress(label, total, work);
+  };
+  try {
+    (void)import_text(file, options);
+    FAIL() << "accepted";
+  } catch (const std::invalid_argument& refused) {
+    EXPECT_THAT(refused.what(), HasSubstr("data.txt: it became shorter while it was read"));
+  }
 }
 
 TEST(Import, ReportsLinesThatAreNotDataByTheirNumbers) {
@@ -214,6 +236,49 @@ TEST(Import, CountsTimeByARateWhereThereIsNone) {
       imported("1 2\n2 3\n3 4\n", {.rate_hz = 10.0}, "position=1[mm],force=2[N]").recording;
   EXPECT_THAT(recording.time, ElementsAre(0.0, DoubleEq(0.1), DoubleEq(0.2)));
   EXPECT_THROW((void)imported("1 2\n2 3\n", {}, "position=1[mm],force=2[N]"), std::invalid_argument);
+}
+
+TEST(Import, CountsEpochsExactlyAndKnowsWhenTheyBegan) {
+  const auto begins = [](const std::string& first, const std::string& second, const std::string& unit) {
+    return imported(first + ",1,2\n" + second + ",2,3\n", {},
+                    "time=1[" + unit + "],position=2[mm],force=3[N]");
+  };
+  const Imported ns = begins("1700000000123456789", "1700000000124456792", "ns");
+  EXPECT_EQ(ns.recording.header.start_ns, 1'700'000'000'123'456'789);
+  EXPECT_EQ(ns.recording.header.start_clock, "UTC");
+  EXPECT_DOUBLE_EQ(ns.recording.time[1], 0.001000003);
+  EXPECT_EQ(begins("1700000000123456", "1700000000124459", "us").recording.header.start_ns,
+            1'700'000'000'123'456'000);
+  EXPECT_EQ(begins("1700000000123", "1700000000126", "ms").recording.header.start_ns,
+            1'700'000'000'123'000'000);
+  const Imported s = begins("1700000000.123456789", "1700000000.124456792", "s");
+  EXPECT_EQ(s.recording.header.start_ns, 1'700'000'000'123'456'789);
+  EXPECT_NEAR(s.recording.time[1], 0.001000003, 1e-12);
+  EXPECT_THAT(ns.warnings, Not(Contains(HasSubstr("no moment"))));
+}
+
+TEST(Import, SaysOfLongTimesThatAreNoEpochThatTheirBeginIsNotKnown) {
+  for (const auto* unit : {"s", "ms", "us"}) {
+    const Imported long_ns = imported("1700000000123456789,1,2\n1700000000124456792,2,3\n", {},
+                                      std::string("time=1[") + unit + "],position=2[mm],force=3[N]");
+    EXPECT_FALSE(long_ns.recording.header.start_ns) << unit;
+    EXPECT_THAT(long_ns.warnings, Contains(HasSubstr("no moment of 2000 to 2050"))) << unit;
+  }
+  const Imported of_1904 = imported("3786912000.000,1,2\n3786912000.002,2,3\n");
+  EXPECT_FALSE(of_1904.recording.header.start_ns);
+  EXPECT_NEAR(of_1904.recording.time[1], 0.002, 1e-12);
+  EXPECT_THAT(of_1904.warnings, Contains(HasSubstr("no moment of 2000 to 2050")));
+}
+
+TEST(Import, KeepsLongNumbersOfOtherChannelsAsTheyAre) {
+  const Imported long_way = imported("0,1000000000,2\n1,1000000001.5,-3\n2,1.0000000025e9,1\n");
+  EXPECT_THAT(long_way.recording.position,
+              ElementsAre(DoubleEq(1e6), DoubleEq(1000000.0015), DoubleEq(1000000.0025)));
+}
+
+TEST(Import, RefusesARateWithoutEnd) {
+  EXPECT_THAT([] { (void)imported("1,2\n2,3\n", {.rate_hz = INFINITY}, "position=1[mm],force=2[N]"); },
+              testing::ThrowsMessage<std::invalid_argument>(HasSubstr("--rate is infinite; expected")));
 }
 
 TEST(Import, ResamplesALineExactlyAndLeavesGapsOpen) {

@@ -139,6 +139,70 @@ TEST(TextLayout, FindsUnitsBehindASlashOrInWords) {
   EXPECT_EQ(layout.columns[3].name, "Kraft / Weg");
 }
 
+/// "unit" or "?unknown" of one heading.
+std::string unit_in(const std::string& heading) {
+  const TextLayout layout = layout_of("t;" + heading + "\n0;1\n1;2\n");
+  const TextColumn& column = layout.columns.at(1);
+  return column.unknown_unit.empty() ? column.unit : "?" + column.unknown_unit;
+}
+
+TEST(TextLayout, FindsAUnitThatIsAWordOfTheHeading) {
+  for (const auto* heading :
+       {"Force mN", "Fz, mN", "Force_mN", "Force: mN", "Force {mN}", "Force <mN>", "Force|mN", "Force=mN",
+        "Force-mN", "Force.mN", "Force/mN", "Force mN filtered", "mN Force", "Force_mN_filtered",
+        "Force [mN] filtered", "Force (mN, filtered)", "Load (mN) 2", "Probe mN", "Fx mN"}) {
+    EXPECT_EQ(unit_in(heading), "mN") << heading;
+  }
+  EXPECT_EQ(unit_in("Fx N"), "N");
+  EXPECT_EQ(unit_in("Fz, N"), "N");
+  EXPECT_EQ(unit_in("Position m"), "m");
+  EXPECT_EQ(unit_in("Time ms"), "ms");
+  EXPECT_EQ(unit_in("time_ms_min"), "ms");
+  EXPECT_EQ(unit_in("time min"), "min");
+  EXPECT_EQ(unit_in("Angle °"), "°");
+  EXPECT_EQ(unit_in("Load kg"), "kg");
+  EXPECT_EQ(unit_in("Load mV"), "mV");
+  EXPECT_EQ(unit_in("Force V"), "V");
+  EXPECT_EQ(unit_in("Torque N-m"), "N m");
+  EXPECT_EQ(unit_in("torque_N_m"), "N m");
+  EXPECT_EQ(unit_in("Speed mm/s"), "mm/s");
+  EXPECT_EQ(unit_in("k_N_per_mm"), "N/mm");
+  EXPECT_EQ(unit_in("Extension (mm) from Preload"), "mm");
+}
+
+TEST(TextLayout, TakesNoWordForAUnitThatDoesNotFitTheName) {
+  for (const auto* heading :
+       {"Trial N", "Position x", "Force A", "Force max", "Force min", "Load min", "Position in base",
+        "Test s", "Marker m", "Cross bar", "Force in hand", "Stroke rev", "Fx1", "Force 2"}) {
+    EXPECT_EQ(unit_in(heading), "") << heading;
+  }
+}
+
+TEST(TextLayout, DoubtsAUnitWhoseCapitalsOrPairsSayTwoThings) {
+  EXPECT_EQ(unit_in("Force MN"), "?MN");
+  EXPECT_EQ(unit_in("Time MS"), "?MS");
+  EXPECT_EQ(unit_in("speed_mm_s"), "?mm_s") << "not seconds";
+  EXPECT_EQ(unit_in("Weg (\u00e6m)"), "?\u00e6m") << "a spoiled µ";
+}
+
+TEST(TextLayout, DoubtsAFactorInTheHeading) {
+  EXPECT_EQ(unit_in("Force (N) x10"), "?(N) x10");
+  EXPECT_EQ(unit_in("Force x10 (N)"), "?x10 (N)");
+  EXPECT_EQ(unit_in("Force [N*10]"), "?N*10");
+  for (const auto* heading :
+       {"Force (x0.1 N)", "Force (N x10)", "Force x10", "Force N x 10", "10*Force (N)", "Force (N) *2",
+        "Force (N)/10", "Force (N) 1e-3", "Force x 10^3 [N]", "Force (kN/10)", "Force (N) ×10",
+        "Force 10x (N)", "Force 10 mN", "Load cell (50 N)"}) {
+    EXPECT_EQ(unit_in(heading).substr(0, 1), "?") << heading;
+  }
+  EXPECT_EQ(unit_in("Fx10 (N)"), "N") << "a name";
+  EXPECT_EQ(unit_in("x2 (mm)"), "mm") << "likewise";
+  EXPECT_EQ(unit_in("marker_x10 (mm)"), "mm") << "likewise";
+  EXPECT_EQ(unit_in("x10 (mm)"), "mm") << "likewise";
+  EXPECT_EQ(unit_in("Force 2 N"), "N") << "of the second sensor";
+  EXPECT_EQ(unit_in("Kraft / 10 mN"), "10 mN") << "as DIN 1313 has it";
+}
+
 TEST(TextLayout, TakesNoStatisticForAUnit) {
   const TextLayout layout =
       layout_of("pos_mm_min,pos_mm_max,adc_min,time_min,force_mN_\n0,1,2,3,4\n1,2,3,4,5\n");
@@ -174,6 +238,29 @@ TEST(TextLayout, BeginsBelowTheNamesOfItsColumns) {
   EXPECT_EQ(layout.columns.size(), 4U);
 }
 
+TEST(TextLayout, FindsNamesBesideRemarksThatHoldNumbers) {
+  for (const auto* before :
+       {"# 2024-01-03 run 5\nt [ms],x [mm],f [mN]\n", "# 1,2,3\nt [ms],x [mm],f [mN]\n",
+        "t [ms],x [mm],f [mN]\n# 2024-01-03 run 5\n# 3 4 5\n", "1,2,3\nt [ms],x [mm],f [mN]\n",
+        "run,5,2024\noperator,7\nt [ms],x [mm],f [mN]\n", "# run 5\n# t [ms],x [mm],f [mN]\n# gain 5, 3\n"}) {
+    const TextLayout layout = layout_of(std::string(before) + "0,1,2\n3,4,5\n6,7,8\n");
+    EXPECT_EQ(layout.columns.at(2).unit, "mN") << before;
+    EXPECT_EQ(layout.columns.at(0).unit, "ms") << before;
+  }
+  const TextLayout twice = layout_of("t [ms],x [mm]\n0,1\n1,2\nt [ms],x [mm]\n3,4\n4,5\n");
+  EXPECT_EQ(twice.header_line, 1U) << "no line of data is taken for a remark";
+}
+
+TEST(TextLayout, ReadsATableOfMoreTextsThanNumbersBelowNames) {
+  std::string text = "label;phase;who;x (mm);F (N)\n";
+  for (int i = 0; i < 9; ++i) text += "cut;go;anna;0," + std::to_string(i) + ";3,5\n";
+  const TextLayout layout = layout_of(text);
+  EXPECT_EQ(layout.separator, ';');
+  EXPECT_EQ(layout.point, ',');
+  EXPECT_EQ(layout.columns.at(4).unit, "N");
+  EXPECT_EQ(layout.preamble_lines, 1U);
+}
+
 TEST(TextLayout, ReadsATableOfWhichAllIsQuoted) {
   for (const auto* text : {"\"t\",\"x\",\"F\",\"label\"\n\"0.00\",\"0.10\",\"0.2\",\"press\"\n",
                            "\"t\";\"x\";\"F\";\"label\"\n\"0.00\";\"0.10\";\"0.2\";\"press; hold\"\n"}) {
@@ -198,6 +285,17 @@ TEST(TextLayout, ReadsHeadersInOtherEncodings) {
   EXPECT_EQ(layout_of("temps,d\xE9placement [\xB5m]\n1,2\n3,4\n").columns[1].name, "déplacement")
       << "Latin-1";
   EXPECT_EQ(layout_of("temps,d\xE9placement [\xB5m]\n1,2\n3,4\n").columns[1].unit, "µm");
+  EXPECT_EQ(layout_of("\x8e\x9e\x8a\xd4 (s),\x95\xcf\x88\xca [\x83\xcam]\n1,2\n3,4\n").columns[1].name,
+            "変位")
+      << "Shift-JIS";
+  EXPECT_EQ(layout_of("t,\x89\xd7\x8f\x64 (N)\n1,2\n3,4\n").columns[1].unit, "N");
+  EXPECT_EQ(layout_of("t,Force d\x92"
+                      "appui (\xb5N)\n1,2\n3,4\n")
+                .columns[1]
+                .heading,
+            "Force d’appui (µN)")
+      << "of Windows";
+  EXPECT_EQ(layout_of("t,Winkel (\xb0)\n1,2\n3,4\n").columns[1].unit, "°");
   EXPECT_EQ(layout_of("temps,𝜃\n1,2\n3,4\n").columns[1].name, "𝜃") << "UTF-8 of four bytes";
   EXPECT_EQ(layout_of("\xEF\xBB\xBFtime,x\n1,2\n3,4\n").columns[0].name, "time")
       << "the byte order mark is not part of it";

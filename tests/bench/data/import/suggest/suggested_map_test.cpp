@@ -64,6 +64,31 @@ TEST(SuggestedMap, AsksWhatOneOfAUnitIsThatIsNotKnown) {
   EXPECT_THAT(suggested.remarks, ElementsAre(HasSubstr("column 3 is in dyn, which is no unit known here")));
 }
 
+TEST(SuggestedMap, AsksWhatAFactorInAHeadingMeans) {
+  const std::string text = "t [ms],x [mm],Force (N) x10\n0,1,2\n1,2,3\n";
+  const SuggestedMap suggested = suggest_map(find_layout(text, "t.csv"), text);
+  EXPECT_EQ(suggested.map, "time=1[ms],position=2[mm],force=3[? N]");
+  EXPECT_THAT(suggested.remarks,
+              ElementsAre(HasSubstr("column 3 is in (N) x10 as its heading says, a factor")));
+}
+
+TEST(SuggestedMap, AsksHowManyOfWholeThousandsAreOne) {
+  const std::string text = "t [ms],x [mm],Fz\n0,1,-1234567\n1,2,20\n2,3,40\n";
+  const SuggestedMap suggested = suggest_map(find_layout(text, "t.csv"), text);
+  EXPECT_EQ(suggested.map, "time=1[ms],position=2[mm],force=3[counts/? N]");
+  EXPECT_THAT(suggested.remarks, ElementsAre(HasSubstr("column 3 has whole numbers of a thousand and more")));
+  const std::string said = "t [ms],x [mm],Fz [mN]\n0,1,-1234\n1,2,20\n2,3,40\n";
+  EXPECT_EQ(suggest_map(find_layout(said, "t.csv"), said).map, "time=1[ms],position=2[mm],force=3[mN]");
+}
+
+TEST(SuggestedMap, SaysWhichUnitsAreGuesses) {
+  const std::string text = "t,x [mm],Force\n0.0,1,0.2\n0.1,2,0.3\n";
+  EXPECT_THAT(
+      suggest_map(find_layout(text, "t.csv"), text).remarks,
+      ElementsAre("the file says no unit where the map has s of column 1, N of column 3: a guess, to be set "
+                  "right by who knows it"));
+}
+
 TEST(SuggestedMap, TakesAWeightForTheForceThatItIs) {
   const auto of = [](const std::string& unit) {
     return suggest_map({.columns = {{"Time", "Time", "s"}, {"Way", "Way", "mm"}, {"Force", "Force", unit}}},
