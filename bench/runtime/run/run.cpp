@@ -45,7 +45,10 @@ void stop_process(int) {
 
 /// While it lives Ctrl-Z is the watchdog's.
 struct WatchdogLives {
-  WatchdogLives() { has_watchdog = true; }
+  WatchdogLives() {
+    suspension_requested = false;  // one that the watchdog before had no time for
+    has_watchdog = true;
+  }
   WatchdogLives(const WatchdogLives&) = delete;
   WatchdogLives& operator=(const WatchdogLives&) = delete;
   ~WatchdogLives() { has_watchdog = false; }

@@ -30,6 +30,10 @@ class SharedRing {
   }
   /// How many have been put.
   [[nodiscard]] std::uint64_t count() const noexcept { return count_.load(std::memory_order_acquire); }
+  /// Of `count` the last that are none any more.
+  [[nodiscard]] static constexpr std::uint64_t overwritten(std::uint64_t count) noexcept {
+    return count > slots ? count - slots : 0;
+  }
   /// The one of that number, from 1; false where it is not there any more.
   [[nodiscard]] bool get(std::uint64_t number, T& value) const noexcept {
     const Slot& slot = slots_[number % slots];

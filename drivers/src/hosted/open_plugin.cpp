@@ -59,13 +59,16 @@ class HostedSource final : public ForceSource {
     [[maybe_unused]] const auto woken = ::read(descriptor(), &wakes, sizeof wakes);
     const auto& readings = host_->page().readings;
     const std::uint64_t newest = readings.count();
+    // This thread was held up until they had been overwritten; or a plug-in wrote into the page, so that they
+    // are not gone through one by one.
+    if (const std::uint64_t gone = readings.overwritten(newest); gone > seen_)
+      skipped_ += static_cast<std::int64_t>(gone - std::exchange(seen_, gone));
     while (seen_ < newest) {
       Reading reading;
-      if (!readings.get(++seen_, reading)) {
-        ++skipped_;  // this thread was held up until they had been overwritten
-        continue;
-      }
-      intake.take(frame_of(reading));
+      if (readings.get(++seen_, reading))
+        intake.take(frame_of(reading));
+      else
+        ++skipped_;
     }
     const auto& page = host_->page();
     if (page.lost.load() != 0 || page.host_ended.load() != 0) intake.force().lose();
