@@ -40,7 +40,7 @@ Design read_design(const Place& place, const toml::table& root) {
 /// What a subject is asked; designs whose question is always the same have it without being told.
 std::string read_question(const Place& place, const toml::table& root, const Protocol& protocol) {
   std::string question = read_plain_text(place, root, "question");
-  if (!question.empty()) return question;
+  if (question.find_first_not_of(" \t\r\n") != std::string::npos) return question;
   const SubjectTexts& texts = *protocol.texts;
   if (protocol.design == Design::abx) return texts("question_abx");
   if (protocol.odd_one_out) return texts("question_odd");

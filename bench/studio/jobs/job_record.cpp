@@ -36,6 +36,7 @@ nlohmann::ordered_json to_json(const JobRecord& record) {
           {"created", record.created},
           {"seconds", record.seconds},
           {"clock_set_s", record.clock_set_s},
+          {"unwanted", record.is_unwanted},
           {"again", {{"path", record.again.path}, {"body", record.again.body}}}};
 }
 
@@ -55,7 +56,8 @@ JobRecord job_record_in(std::string_view text) {
       .created = json.at("created").get<std::string>(),
       .seconds = json.at("seconds").get<double>(),
       .clock_set_s = json.at("clock_set_s").get<double>(),
-      .again = {.path = json.at("again").at("path").get<std::string>(), .body = json.at("again").at("body")}};
+      .again = {.path = json.at("again").at("path").get<std::string>(), .body = json.at("again").at("body")},
+      .is_unwanted = json.value("unwanted", false)};
 }
 
 std::string iso_8601(std::chrono::system_clock::time_point time) {

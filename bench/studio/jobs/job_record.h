@@ -43,9 +43,14 @@ struct JobRecord {
   double seconds = 0.0;              ///< that it has run, by a clock that nobody sets
   double clock_set_s = 0.0;          ///< by how much the wall clock was set while it ran
   JobAgain again;
+  bool is_unwanted = false;  ///< somebody has asked to stop it
 
   [[nodiscard]] bool has_ended() const noexcept {
     return state != JobState::waiting && state != JobState::running;
+  }
+  /// What one is that the studio's end, too, would have ended: who asked first is named.
+  [[nodiscard]] JobState state_without_studio() const noexcept {
+    return is_unwanted ? JobState::stopped : JobState::interrupted;
   }
 };
 

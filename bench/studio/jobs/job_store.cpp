@@ -37,7 +37,7 @@ JobRecord kept_record_in(const fs::path& file, std::size_t number) {
   try {
     JobRecord record = job_record_in(read_whole_file(file));
     record.number = number;
-    if (!record.has_ended()) record.state = JobState::interrupted;
+    if (!record.has_ended()) record.state = record.state_without_studio();
     return record;
   } catch (const std::exception& error) {
     return {.number = number,

@@ -23,8 +23,9 @@ class JobStore {
   /// Without a folder nothing is kept.
   explicit JobStore(std::filesystem::path folder = {}) : folder_(std::move(folder)) {}
 
-  /// What is there, oldest first. One that was under way when its studio ended is interrupted now; a record
-  /// that cannot be read stands as one that has failed, with the reason.
+  /// What is there, oldest first. One that was under way when its studio ended is interrupted now, or stopped
+  /// where somebody had asked for that; a record that cannot be read stands as one that has failed, with the
+  /// reason.
   [[nodiscard]] std::vector<JobRecord> load();
   /// Why it is not kept; empty if it is.
   [[nodiscard]] std::string keep(const JobRecord& record);

@@ -45,7 +45,7 @@ Jobs::Jobs(std::filesystem::path folder, JobClocks clocks)
     auto entry = std::make_shared<Entry>();
     last_ = std::max(last_, record.number);
     entry->is_earlier = true;
-    entry->is_changed = record.state == JobState::interrupted;
+    entry->is_changed = record.state == JobState::interrupted || record.state == JobState::stopped;
     entry->record = std::move(record);
     entries_.push_back(std::move(entry));
   }
@@ -86,15 +86,19 @@ std::size_t Jobs::add(JobOrder order) {
 }
 
 void Jobs::stop(std::size_t job) {
-  const std::scoped_lock lock(mutex_);
-  for (const auto& entry : entries_) {
-    if (entry->record.number != job || entry->record.has_ended()) continue;
-    entry->progress.stop = true;
-    if (entry->record.state != JobState::waiting) continue;
-    entry->record.state = JobState::stopped;
-    entry->is_changed = true;
+  std::shared_ptr<Entry> stopped;
+  {
+    const std::scoped_lock lock(mutex_);
+    for (const auto& entry : entries_) {
+      if (entry->record.number != job || entry->record.has_ended()) continue;
+      entry->progress.stop = true;
+      entry->record.is_unwanted = true;
+      if (entry->record.state == JobState::waiting) entry->record.state = JobState::stopped;
+      stopped = entry;
+    }
   }
   changed_.notify_all();
+  if (stopped) keep(*stopped);  // a kill before the work has heard of it is no interruption
 }
 
 std::shared_ptr<Jobs::Entry> Jobs::find(std::size_t job) const {
@@ -123,7 +127,7 @@ nlohmann::ordered_json Jobs::list() const {
     const Entry& one = **entry;
     const bool runs = one.record.state == JobState::running;
     auto json = to_json(one.record);
-    json.erase("format");
+    for (const char* on_disk_alone : {"format", "unwanted"}) json.erase(on_disk_alone);
     json["share"] = one.share();
     if (runs) json["seconds"] = seconds_between(one.begun, clocks_.steady());
     json["stopping"] = runs && one.progress.stop;
@@ -231,11 +235,11 @@ void Jobs::work(const std::stop_token& stop) {
       next->begun_by_the_wall = clocks_.wall();
     }
     keep(*next);
-    run(*next, stop);
+    run(*next);
   }
 }
 
-void Jobs::run(Entry& entry, const std::stop_token& stop) {
+void Jobs::run(Entry& entry) {
   JobEnd end("");
   std::string error;
   auto state = JobState::done;
@@ -249,7 +253,8 @@ void Jobs::run(Entry& entry, const std::stop_token& stop) {
     error = "it failed without saying why";
   }
   if (state == JobState::failed && entry.progress.stop) {
-    state = stop.stop_requested() ? JobState::interrupted : JobState::stopped;
+    const std::scoped_lock lock(mutex_);
+    state = entry.record.state_without_studio();
     error.clear();
   }
   std::vector<std::size_t> forgotten;

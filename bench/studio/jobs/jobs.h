@@ -73,7 +73,8 @@ class Jobs {
   std::size_t add(JobOrder order);
   /// For the end of the program: asks the one at work to stop, and begins none any more.
   void close();
-  /// Asks one to stop; nothing if there is none such or it has ended. Never waits.
+  /// Asks one to stop; nothing if there is none such or it has ended. It is asked before the disk is waited
+  /// for.
   void stop(std::size_t job);
   /// No more is known of one that has ended. May wait for the disk. @throws RequestError 404, 409.
   void forget(std::size_t job);
@@ -87,7 +88,7 @@ class Jobs {
  private:
   struct Entry;
   void work(const std::stop_token& stop);
-  void run(Entry& entry, const std::stop_token& stop);
+  void run(Entry& entry);
   /// Writes the record as it is now. Not with mutex_ held: a disk may take its time.
   void keep(Entry& entry);
   void keep_changed();

@@ -123,11 +123,15 @@ void LiveHub::start_recording(const std::filesystem::path& file, bool replace) {
     is_opening_ = false;
     throw;
   }
-  const std::lock_guard lock(mutex_);
-  is_opening_ = false;
-  if (has_ended_) throw std::invalid_argument("the loop ended before the recording began");
-  recording_failure_.clear();
-  recording_ = std::move(recording);
+  {
+    const std::lock_guard lock(mutex_);
+    is_opening_ = false;
+    recording_failure_.clear();
+    if (!has_ended_) recording_ = std::move(recording);
+  }
+  if (!recording) return;
+  (void)close(*recording, {.fault = {}, .why = "the loop ended before the recording began"});
+  throw std::invalid_argument("the loop ended before the recording began");
 }
 
 void LiveHub::stop_recording() {

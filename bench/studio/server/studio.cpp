@@ -1,6 +1,8 @@
 #include "server/studio.h"
 
+#include <map>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "cycles/cycle_routes.h"
@@ -57,6 +59,14 @@ class Studio::State {
     routes_.on_ready([this] { server_.wake(); });
     loop_.on_rows([this] { server_.wake(); });
     add_workspace_routes(routes_, workspace_, options.device_uri);
+    routes_.post("/api/key", Routes::Pace::at_once, [this](const HttpRequest& request) {
+      const nlohmann::json given = json_in(request);
+      const nlohmann::json texts = given.value("query", nlohmann::json());
+      if (!texts.is_object()) throw RequestError(400, "'query' has to be an object of texts");
+      std::map<std::string, std::string> query;
+      for (const auto& [name, value] : texts.items()) query[name] = text_in(texts, name);
+      return json_response({{"key", access_.key_for(text_in(given, "path"), query)}});
+    });
     add_file_routes(routes_, workspace_);
     add_live_routes(routes_, loop_, live_hooks());
     add_recording_routes(routes_, views_,

@@ -1,5 +1,6 @@
 #include "views/recording_routes.h"
 
+#include <exception>
 #include <memory>
 #include <utility>
 
@@ -52,7 +53,13 @@ void add_recording_routes(Routes& routes, RecordingViews& views,
   });
   routes.get("/api/recording/thumbnail", Routes::Pace::slow,
              [thumbnails = std::make_shared<Thumbnails>(), file_of](const HttpRequest& request) {
-               return json_text_response(thumbnails->of(file_of(request)));
+               try {
+                 return json_text_response(thumbnails->of(file_of(request)));
+               } catch (const std::exception&) {
+                 // Why there is none is said where it is opened; a list asks for many, of which some are
+                 // gone.
+                 return json_response(nullptr);
+               }
              });
   routes.get("/api/recording/inspection", Routes::Pace::slow, [&views, file_of](const HttpRequest& request) {
     return json_text_response(views.opened(file_of(request))->inspection());

@@ -109,6 +109,7 @@ std::vector<WorkspaceEntry> Workspace::list() const {
                          .modified = modified_of(about)};
     entry.id = id_of_name(entry.name);
     entry.is_looked_into = entry.kind != FileKind::recording;
+    entry.is_written = entry.is_partial() && schema::is_marked(entry.path);
     all.push_back(std::move(entry));
   }
   std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.name < b.name; });

@@ -41,6 +41,10 @@ struct WorkspaceEntry {
   std::optional<double> seconds;  ///< of a recording that was looked into and can be read
   std::string uuid;               ///< of the same
   bool is_damaged = false;        ///< HDF5 can make nothing of it: it may have been a recording
+  bool is_written = false;        ///< not closed, and a living process writes it
+
+  /// NAME.h5.partial: it is written, or who wrote it died.
+  [[nodiscard]] bool is_partial() const { return name.ends_with(".partial"); }
 };
 
 /// The folder that a studio works in: what is in it, four folders deep, hidden ones and symbolic links left

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <filesystem>
 #include <iterator>
 #include <memory>
 #include <string_view>
@@ -19,6 +20,7 @@
 #include "protocol/apparatus.h"
 #include "recordings/provenance.h"
 #include "report/results/found_results.h"
+#include "sealed/journal.h"
 #include "sealed/session_facts.h"
 
 namespace kerf::bench {
@@ -38,10 +40,10 @@ std::string list_of_recordings(const std::vector<WorkspaceEntry>& entries) {
   std::string list;
   for (const WorkspaceEntry& it : entries) {
     if (it.kind != FileKind::recording) continue;
-    fmt::format_to(std::back_inserter(list),
-                   R"({}{{"id":"{}","name":{},"bytes":{},"modified":"{}","partial":{})",
-                   list.empty() ? "" : ",", it.id, text_of_json(it.name), it.bytes, modified_of(it),
-                   it.name.ends_with(".partial"));
+    fmt::format_to(
+        std::back_inserter(list), R"({}{{"id":"{}","name":{},"bytes":{},"modified":"{}","partial":{})",
+        list.empty() ? "" : ",", it.id, text_of_json(it.name), it.bytes, modified_of(it), it.is_partial());
+    if (it.is_written) list += R"(,"written":true)";
     if (it.seconds) fmt::format_to(std::back_inserter(list), R"(,"seconds":{})", text_of_json(*it.seconds));
     if (!it.uuid.empty()) fmt::format_to(std::back_inserter(list), R"(,"uuid":{})", text_of_json(it.uuid));
     if (it.is_damaged) list += R"(,"damaged":true)";
@@ -81,16 +83,17 @@ nlohmann::ordered_json apparatus_entry(const std::string& protocol, const std::s
 }
 
 nlohmann::ordered_json session_entry(const WorkspaceEntry& entry) {
-  nlohmann::ordered_json json{{"id", entry.id},    {"name", entry.name},
-                              {"subject", ""},     {"key", ""},
-                              {"finished", false}, {"answered", 0},
-                              {"error", ""},       {"apparatus", nlohmann::ordered_json::array()}};
+  nlohmann::ordered_json json{
+      {"id", entry.id},   {"name", entry.name}, {"subject", ""},
+      {"key", ""},        {"finished", false},  {"answered", 0},
+      {"running", false}, {"error", ""},        {"apparatus", nlohmann::ordered_json::array()}};
   try {
     const nlohmann::ordered_json facts = session_facts(entry.path);
     json["subject"] = facts.at("subject");
     json["key"] = facts.at("key");
     json["finished"] = facts.at("finished");
     json["answered"] = facts.at("trials");
+    json["running"] = facts.at("journal").is_object() && facts["journal"].at("being_run").get<bool>();
     json["apparatus"] = apparatus_entry(facts.at("protocol").get<std::string>(), entry.name);
   } catch (const std::exception& error) {
     json["error"] = error.what();
@@ -111,14 +114,17 @@ nlohmann::ordered_json file_entry(const WorkspaceEntry& entry) {
 
 bool is_law(FileKind kind) { return kind == FileKind::law; }
 bool is_session(FileKind kind) { return kind == FileKind::session; }
+/// What a session has come to stands beside it until it is closed: the file itself stays as it was.
+bool has_journal(const WorkspaceEntry& entry) { return std::filesystem::exists(journal_of(entry.path)); }
 bool is_other(FileKind kind) { return !is_law(kind) && !is_session(kind) && kind != FileKind::recording; }
 
 /// Told by what each file is and by what is `read` from some, so that the list itself need not be made.
 std::string state_of(const std::vector<WorkspaceEntry>& entries, const nlohmann::ordered_json& read) {
   std::string all = text_of_json(read);
   for (const WorkspaceEntry& it : entries)
-    fmt::format_to(std::back_inserter(all), "\n{} {} {} {} {} {}", it.id, name_of(it.kind), it.bytes,
-                   it.modified.time_since_epoch().count(), it.is_looked_into, it.seconds.value_or(-1.0));
+    fmt::format_to(std::back_inserter(all), "\n{} {} {} {} {} {} {}", it.id, name_of(it.kind), it.bytes,
+                   it.modified.time_since_epoch().count(), it.is_looked_into, it.seconds.value_or(-1.0),
+                   it.is_written);
   return sha256_of(std::string_view(all)).substr(0, 16);
 }
 
@@ -127,7 +133,9 @@ class EntriesRead {
  public:
   using Make = nlohmann::ordered_json (*)(const WorkspaceEntry&);
 
-  EntriesRead(bool (*takes)(FileKind), Make make) : takes_(takes), make_(make) {}
+  /// @param is_open whether there is more to an entry than its file, so that it is read each time.
+  EntriesRead(bool (*takes)(FileKind), Make make, bool (*is_open)(const WorkspaceEntry&) = nullptr)
+      : takes_(takes), make_(make), is_open_(is_open) {}
 
   [[nodiscard]] nlohmann::ordered_json of(const std::vector<WorkspaceEntry>& entries) {
     nlohmann::ordered_json found = nlohmann::ordered_json::array();
@@ -137,9 +145,10 @@ class EntriesRead {
       const auto before = read_.find(it.id);
       const bool is_known =
           before != read_.end() && before->second.bytes == it.bytes && before->second.modified == it.modified;
-      found.push_back(is_known ? std::move(before->second.json) : make_(it));
+      const bool is_open = is_open_ != nullptr && is_open_(it);
+      found.push_back(is_known && !is_open ? std::move(before->second.json) : make_(it));
       // What could not be read may be readable the next time, as it is.
-      if (found.back().value("error", "").empty())
+      if (!is_open && found.back().value("error", "").empty())
         still_there[it.id] = {.bytes = it.bytes, .modified = it.modified, .json = found.back()};
     }
     read_ = std::move(still_there);
@@ -155,13 +164,14 @@ class EntriesRead {
 
   bool (*takes_)(FileKind);
   Make make_;
+  bool (*is_open_)(const WorkspaceEntry&);
   std::unordered_map<std::string, Read> read_;  ///< by id
 };
 
 /// Of slow answers, which one thread gives.
 struct FolderRead {
   EntriesRead laws{is_law, law_entry};
-  EntriesRead sessions{is_session, session_entry};
+  EntriesRead sessions{is_session, session_entry, has_journal};
   EntriesRead files{is_other, file_entry};
 };
 

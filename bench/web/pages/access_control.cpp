@@ -30,6 +30,21 @@ std::string AccessControl::url(std::string_view path) const {
   return fmt::format("http://{}{}?token={}", hosts_.front(), path, token_);
 }
 
+std::string AccessControl::key_for(std::string_view path,
+                                   const std::map<std::string, std::string>& query) const {
+  std::string address(path);
+  for (const auto& [name, value] : query) {
+    // With lengths: no other address is the same text.
+    if (name != "key") address += fmt::format("\n{} {} {} {}", name.size(), name, value.size(), value);
+  }
+  std::array<unsigned char, 16> key{};
+  const auto bytes = [](std::string_view text) {
+    return reinterpret_cast<const unsigned char*>(text.data());
+  };
+  crypto_generichash(key.data(), key.size(), bytes(address), address.size(), bytes(token_), token_.size());
+  return fmt::format("{:02x}", fmt::join(key, ""));
+}
+
 bool AccessControl::is_ours(std::string_view host) const {
   return std::find(hosts_.begin(), hosts_.end(), host) != hosts_.end();
 }
@@ -47,9 +62,11 @@ bool AccessControl::admits_without_token(const HttpRequest& request) const {
 bool AccessControl::admits(const HttpRequest& request) const {
   if (!admits_without_token(request)) return false;
   if (request.headers.contains("x-kerf-token")) return is_same_secret(request.header("x-kerf-token"), token_);
+  if (request.method == "POST") return false;
+  if (const auto key = request.query.find("key"); key != request.query.end())
+    return is_same_secret(key->second, key_for(request.path, request.query));
   const auto in_address = request.query.find("token");
-  return request.method != "POST" && in_address != request.query.end() &&
-         is_same_secret(in_address->second, token_);
+  return in_address != request.query.end() && is_same_secret(in_address->second, token_);
 }
 
 HttpResponse AccessControl::refuse(std::string_view why) {

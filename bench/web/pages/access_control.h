@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +23,11 @@ class AccessControl {
   [[nodiscard]] const std::string& token() const noexcept { return token_; }
   /// The address to open: "http://127.0.0.1:8000/?token=..." for the path "/".
   [[nodiscard]] std::string url(std::string_view path) const;
+  /// What lets whoever has it GET this one address, as `key` in its query, as long as the server lives: for
+  /// what is opened in a tab of its own, where an address may be copied. Of the token, which it does not
+  /// tell.
+  [[nodiscard]] std::string key_for(std::string_view path,
+                                    const std::map<std::string, std::string>& query) const;
   /// An address can be opened from anywhere; an action (POST) only by the page, which sends the header.
   [[nodiscard]] bool admits(const HttpRequest& request) const;
   /// As admits(), but for the token: the server was called by a name of its own, and not by a page of another

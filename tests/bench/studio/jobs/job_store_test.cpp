@@ -38,7 +38,7 @@ class KeptJobs : public testing::Test {
   [[nodiscard]] JobOrder waits() {
     return {.kind = "chart", .title = "Chart", .work = [this](JobProgress& progress) {
               is_running_ = true;
-              while (!progress.stop) std::this_thread::yield();
+              while (!progress.stop || is_deaf_) std::this_thread::yield();
               throw std::runtime_error("left half-way");
               return JobEnd("");
             }};
@@ -47,6 +47,7 @@ class KeptJobs : public testing::Test {
 
   TemporaryFolder folder_;
   std::atomic<bool> is_running_{false};
+  std::atomic<bool> is_deaf_{false};  ///< the work has not yet heard that it is to stop
 };
 
 TEST_F(KeptJobs, OutliveTheStudio) {
@@ -82,6 +83,23 @@ TEST_F(KeptJobs, WhatRanWhenTheStudioEndedIsInterrupted) {
     Jobs second(left);
     EXPECT_EQ(ended_job(second, 1)["state"], "interrupted") << left;
     EXPECT_EQ(ended_job(second, 2)["state"], "interrupted") << left << ": it had not begun";
+  }
+}
+
+TEST_F(KeptJobs, WhatSomebodyStoppedIsStoppedWhateverEndedTheStudioMeanwhile) {
+  {
+    Jobs first(jobs());
+    const std::size_t job = first.add(waits());
+    while (!is_running_) std::this_thread::yield();
+    is_deaf_ = true;
+    first.stop(job);
+    fs::copy(jobs(), folder_ / "killed", fs::copy_options::recursive);
+    first.close();
+    is_deaf_ = false;
+  }
+  for (const fs::path& left : {jobs(), folder_ / "killed"}) {
+    Jobs second(left);
+    EXPECT_EQ(ended_job(second, 1)["state"], "stopped") << left;
   }
 }
 

@@ -4,7 +4,7 @@ import { writeFile } from "node:fs/promises";
 import { join } from "node:path";
 
 import { audit } from "./accessibility.mjs";
-import { expect, expectEqual, openPage, until } from "./harness.mjs";
+import { expect, expectEqual, expectNoComplaints, openPage, until } from "./harness.mjs";
 
 const places = ["scope", "recordings", "editor", "fits", "chart", "stability", "sessions"];
 const status = async (studio) => (await studio.api("/api/live/status")).json;
@@ -44,6 +44,36 @@ damping = { value = 1.6, unit = "N·s/rad" }
 `;
 
 export const tests = {
+  async "in a small window the words of every state are whole, and the button that takes the force stays"({
+    browser,
+    studio,
+    screenshots,
+  }) {
+    await studio.serve();
+    const status = (await studio.api("/api/live/status")).json;
+    const page = await openPage(browser, { viewport: { width: 640, height: 360 } });
+    let told = {};
+    await page.route("**/api/live/status", (route) => route.fulfill({ json: { ...status, ...told } }));
+    await page.goto(studio.page("recordings"));
+    const zero = page.locator("#zero");
+    const before = await zero.boundingBox();
+    for (const [force, more, words] of [
+      ["free", { running: true }, "Running without force"],
+      ["rendered", { running: true, law: "a_long_name_of_a_law_that_somebody_gave.law.toml" }, "Force on"],
+      ["zero", {}, "no loop is running"],
+      ["held", { running: true, force_reason: "the position has jumped" }, "See where the tool is"],
+      ["lost", { force_reason: "the device /dev/serial/by-id/usb-u6 has not answered for 0.25 s" }, "Ended by a fault"],
+    ]) {
+      told = { force, ...more };
+      const said = page.locator("#force_bar p").filter({ hasText: words });
+      await said.waitFor();
+      expect(await said.evaluate((it) => it.scrollHeight <= it.clientHeight + 1), `${force}: its words are cut`);
+      expectEqual(await zero.boundingBox(), before, `${force}: where the button is`);
+      await page.screenshot({ path: join(screenshots, `bar_${force}_640.png`) });
+    }
+    expectNoComplaints(page);
+  },
+
   async "a tab from before the studio was started anew makes zero force, and says that it is old"({ browser, studio }) {
     await studio.serve();
     const old = await open(browser, studio, "fits");

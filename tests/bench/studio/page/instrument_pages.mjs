@@ -185,6 +185,46 @@ export const tests = {
     expectEqual((await studio.api("/api/live/mark", { text: "late" })).status, 409, "without a loop");
   },
 
+  async "a recording whose studio is killed is said to have ended without being closed, and is closed from the page"({
+    browser,
+    studio,
+    screenshots,
+  }) {
+    await studio.serve();
+    await startLoop(studio);
+    const page = await openScope(browser, studio);
+    await studio.api("/api/live/record", { name: "cut_off" });
+    await until("rows are recorded", async () => (await studio.api("/api/live/status")).json.recording?.rows > 2000);
+    await page.locator(".list_row").filter({ hasText: "cut_off" }).getByText("being recorded").waitFor();
+    await studio.stop("SIGKILL");
+    await page.getByText(/No answer for \d+ s: whether the loop runs is not known/).waitFor();
+    await page.getByText(/cut_off\.h5: [\d,]+ rows, .* were written when the studio last answered/).waitFor();
+    expectEqual(await page.getByText(/^Running at/).count(), 0, "what says that it runs");
+    await page.screenshot({ path: join(screenshots, "scope_no_answer.png") });
+    await page.context().close();
+
+    await studio.serve();
+    const next = await openScope(browser, studio);
+    const panel = next.locator(".scope_panel .recorded");
+    await panel.getByText("cut_off.h5.partial ended without being closed").waitFor();
+    await next.locator(".list_row").filter({ hasText: "cut_off" }).getByText("not closed").waitFor();
+    await next.screenshot({ path: join(screenshots, "scope_left_open.png") });
+    expectEqual(await audit(next, { focus: false }), [], "what is not accessible");
+    await next.locator(".list_row").filter({ hasText: "cut_off" }).click();
+    await next
+      .locator(".recording_facts")
+      .getByText(/ended without being closed/)
+      .waitFor();
+    await next.goto(studio.page("scope"));
+    await panel.getByRole("link", { name: "close it" }).click();
+    await next.locator(".verb_page").getByRole("button", { name: "Run" }).click();
+    await until("it is whole", () => existsSync(join(studio.folder, "cut_off.h5")));
+    await until("and no longer open", () => !existsSync(join(studio.folder, "cut_off.h5.partial")));
+    await next.goto(studio.page("scope"));
+    await panel.getByText("Not recording", { exact: true }).waitFor();
+    expectNoComplaints(next);
+  },
+
   async "deadlines are told, and a loop that has ended is not shown as one that runs"({
     browser,
     studio,

@@ -74,6 +74,47 @@ export const tests = {
     expectNoComplaints(page);
   },
 
+  async AreToldWholeWhereTheyAreCut({ browser, studio, screenshots }) {
+    const long = `${"a long name of a cut ".repeat(9)}.h5`.replaceAll(" ", "_");
+    await prepare(studio, [long]);
+    const page = await openPage(browser);
+    await open(page, studio, long);
+    const heading = page.locator(".recording_head h1");
+    await until("the head can be reached", async () => (await heading.getAttribute("tabindex")) === "0");
+    expectEqual(await heading.getAttribute("title"), long, "the head's title");
+    const box = page.locator(".whole_text");
+    const stem = long.replace(/\.h5$/, "");
+    for (const reached of [heading, page.locator(".list_row").filter({ hasText: stem })]) {
+      await page.locator(".list_search").focus();
+      await page.keyboard.press("Tab"); // by the keyboard
+      await reached.focus();
+      await box.waitFor();
+      expect((await box.textContent()).includes(stem), `${await box.textContent()} at what has the focus`);
+      await page.screenshot({ path: join(screenshots, "whole_text.png") });
+      await page.locator("#zero").focus();
+      await box.waitFor({ state: "hidden" });
+    }
+    await page.setViewportSize({ width: 640, height: 360 });
+    // Wherever an ellipsis is, what it stands for is told.
+    for (const place of [`recording/${idOf(long)}/time`, `recording/${idOf(long)}/report`, "recordings", "scope"]) {
+      await page.goto(studio.page(place));
+      const untold = () =>
+        page.evaluate(() => {
+          const said = (it) => it.closest("[title]")?.title.includes(it.textContent.trim());
+          const reached = (it) => it.closest("a, button, label, summary, [tabindex='0']");
+          return [...document.querySelectorAll("main *, #side *")]
+            .filter((it) => getComputedStyle(it).textOverflow === "ellipsis" && it.scrollWidth > it.clientWidth + 1)
+            .filter((it) => !/reading/.test(it.className) && it.checkVisibility())
+            .filter((it) => !said(it) || !reached(it))
+            .map((it) => `${it.className}: ${it.textContent}`);
+        });
+      await until(`${place}: all is told`, async () => (await untold()).length === 0).catch(async () =>
+        expectEqual(await untold(), [], `what is cut without a word at ${place}`),
+      );
+    }
+    expectNoComplaints(page);
+  },
+
   async AreHandedOutUnderNamesThatEveryFileSystemTakes({ browser, studio }) {
     await prepare(studio, names);
     const page = await openPage(browser);

@@ -154,6 +154,55 @@ export const tests = {
     expectNoComplaints(page);
   },
 
+  async DrawsWhatThePageMarksAndSaysHowLongARowOfATableIs({ browser, studio, screenshots }) {
+    const page = await prepare({ browser, studio });
+    studio.kerfOrThrow("inspect", "cut.h5", "--flag", "2=the tissue slipped");
+    await open(page, studio, "time");
+    await page.locator(".tab_tools summary", { hasText: /Cycles \d+, 1 flagged/ }).waitFor();
+    const bar = page.locator(".time_bar");
+    for (const column of ["one", "two"]) {
+      const svg = (await save(page, bar, "SVG", column)).bytes.toString("utf8");
+      const { texts, sizes } = await page.evaluate((text) => {
+        const all = [...new DOMParser().parseFromString(text, "image/svg+xml").querySelectorAll("text")];
+        return {
+          texts: all.map((it) => it.textContent),
+          sizes: [...new Set(all.map((it) => it.getAttribute("font-size")))],
+        };
+      }, svg);
+      const legend = ["force measured theta", "closing", "opening", "event", "cycle", "flagged cycle"];
+      const at = legend.map((it) => texts.lastIndexOf(it));
+      expectEqual(
+        at,
+        [...at].sort((a, b) => a - b),
+        `${legend} in their order, marks last, in ${texts}`,
+      );
+      expect(at[0] >= 0 && !texts.includes("no rows"), "what is there is in the legend, and nothing else");
+      expectEqual(sizes, ["8"], "letters of 8 pt");
+    }
+    const { bytes } = await save(page, bar, "PNG", "one");
+    await writeFile(join(screenshots, "time_marks_88mm.png"), bytes);
+
+    const whole = tableIn((await save(page, bar, "CSV")).bytes);
+    expectEqual(whole.head.slice(0, 2), ["time [s]", "time covered by a row [s]"], "what a row is of");
+    const times = whole.column("time [s]").map(Number);
+    const step = (times.at(-1) - times[0]) / (times.length - 1);
+    const [covered] = whole.column("time covered by a row [s]").map(Number);
+    expect(Math.abs(covered / step - 1) < 0.01, `${covered} s, rows are ${step} s apart`);
+    const forces = whole.head.filter((it) => /force/.test(it)).map((it) => /\[(.*)\]/.exec(it)[1]);
+    expectEqual(new Set(forces).size, 1, `one unit: ${forces}`);
+
+    // Of two recordings each trace has a plot, whose axis goes as far as it needs: the table has one unit for both.
+    const other = await studio.id("recordings", "other.h5");
+    await open(page, studio, "time", `?over=${other}&traces=force_commanded theta,force_measured theta`);
+    await page.locator(".time_plot").nth(1).waitFor();
+    await until("all units are one", async () => {
+      const { head } = tableIn((await save(page, bar, "CSV")).bytes);
+      const units = head.filter((it) => /force/i.test(it)).map((it) => /\[(.*)\]/.exec(it)[1]);
+      return units.length >= 4 && new Set(units).size === 1;
+    });
+    expectNoComplaints(page);
+  },
+
   async IsZoomedAndReadByKeysAndPointer({ browser, studio }) {
     const page = await prepare({ browser, studio });
     await open(page, studio, "loop", "?loops=average");

@@ -87,7 +87,10 @@ async function testFits(page, studio) {
   expect((await page.textContent("main p.choice")).includes(written.choice.why), "the choice says why");
   // One law has another error here and in the segment editor (finding S24): both pages say why.
   const text = await page.textContent("main");
-  expect(text.includes("those of the tab Law are over the averaged cycle"), "it says what the errors are over");
+  expect(
+    text.includes("those of the tab Law, and its JND, are of the averaged cycle"),
+    "it says what the errors are over",
+  );
   const { model, within_jnd } = written.choice;
   const mark = within_jnd ? "simplest within the JND" : "as good as the best, not within the JND";
   const row = page.locator("table.fits tbody tr", { hasText: model });

@@ -91,7 +91,6 @@ export const tests = {
     }
     // Made from the page, it is there to be begun.
     await page.locator(".verb_page").getByLabel("output").fill("S07");
-    await page.locator(".verb_page details > summary").first().click();
     await page.locator(".verb_page").getByLabel("subject", { exact: true }).fill("S07");
     await page.getByRole("button", { name: "Run" }).click();
     await page.locator(".job_page", { hasText: "done" }).waitFor();
@@ -107,6 +106,7 @@ export const tests = {
   }) {
     await writeFile(join(studio.folder, "soft.law.toml"), await law(6));
     await writeFile(join(studio.folder, "hard.law.toml"), await law(12));
+    await writeFile(join(studio.folder, "there.protocol.toml"), protocol);
     studio.kerfOrThrow("session", "key", "keeper.key");
     await studio.serve("--key-file", join(studio.folder, "keeper.key"));
     const page = await openPage(browser);
@@ -122,7 +122,18 @@ export const tests = {
     await until("it can be run", async () => /^It can be run: 12 trials/.test(await verdict.textContent()));
     const save = page.getByRole("button", { name: "Save" });
     expect(await save.isDisabled(), "without a name it is not saved");
-    await page.getByLabel("Name of the file").fill("soft-or-hard");
+    const name = page.getByLabel("Name of the file");
+    for (const [typed, why] of [
+      ["soft or hard", /letters, digits/],
+      ["there", /there\.protocol\.toml is there already/],
+    ]) {
+      await name.fill(typed);
+      await page.locator("#protocol_name_why").filter({ hasText: why }).waitFor();
+      expectEqual(await name.getAttribute("aria-invalid"), "true", typed);
+      await page.locator(".protocol .verdict:not([aria-busy])").waitFor();
+      expect(await save.isDisabled(), `${typed} is no name for it`);
+    }
+    await name.fill("soft-or-hard");
     await until("it can be saved", () => save.isEnabled());
     for (const colorScheme of ["light", "dark"]) {
       await page.emulateMedia({ colorScheme });
@@ -148,7 +159,6 @@ export const tests = {
     await save.click();
     await page.getByRole("link", { name: "Make a session soft-or-hard.protocol.toml" }).click();
     await page.locator(".verb_page").getByLabel("output").fill("S01");
-    await page.locator(".verb_page details > summary").first().click();
     await page.locator(".verb_page").getByLabel("subject", { exact: true }).fill("S01");
     await page.getByRole("button", { name: "Run" }).click();
     await page.locator(".job_page", { hasText: "done" }).waitFor();
@@ -178,9 +188,22 @@ export const tests = {
       const one = ["constant", "staircase", "quest", "magnitude"].includes(name);
       for (const law of one ? ["soft"] : ["soft", "hard"])
         await page.getByLabel(`${law}.law.toml`, { exact: true }).check();
+      const said = async () => {
+        await page.locator(".protocol .verdict:not([aria-busy])").waitFor();
+        return verdict.textContent();
+      };
+      const question = page.getByLabel(/^Question/);
+      await question.fill("");
+      if (await question.evaluate((it) => it.required)) {
+        expect(/needs a 'question'/.test(await said()), `${name} has none of its own: ${await said()}`);
+        await question.fill("  ");
+        expect(/needs a 'question'/.test(await said()), `blanks are none: ${await said()}`);
+        await question.fill("Which one was stronger?");
+      }
       await until(`${name} can be run`, async () => {
-        const said = await verdict.textContent();
-        return said.startsWith("It can be run") && (await page.inputValue(".protocol_text")).includes(`"${name}"`);
+        return (
+          (await said()).startsWith("It can be run") && (await page.inputValue(".protocol_text")).includes(`"${name}"`)
+        );
       }).catch(async (error) => {
         throw new Error(`${error.message}: ${await verdict.textContent()}`);
       });
@@ -221,6 +244,15 @@ export const tests = {
     await experimenter.getByRole("button", { name: "Begin the session" }).click();
     const link = experimenter.getByRole("link", { name: "Open the subject's page" });
     await link.waitFor();
+    await experimenter
+      .locator(".sessions .files")
+      .getByText(/^running/)
+      .waitFor();
+    await experimenter.locator(".list_kinds").getByRole("button", { name: "Sessions" }).click();
+    await experimenter
+      .locator(".list_row")
+      .getByText(/subject S01 · running/)
+      .waitFor();
 
     const subject = await openPage(browser);
     await subject.goto(await link.getAttribute("href"));

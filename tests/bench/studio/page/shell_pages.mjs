@@ -140,6 +140,20 @@ export const tests = {
     expectNoComplaints(page);
   },
 
+  async "ages in the list go on, and rows stay what they are"({ browser, studio }) {
+    const page = await prepare({ browser, studio });
+    await page.clock.install();
+    await page.goto(studio.page("work"));
+    const row = page.locator(".list_row").first();
+    await row.focus();
+    await page.clock.fastForward("07:00");
+    await row.getByText(/· [67] min ago/).waitFor();
+    await page.clock.fastForward("05:00");
+    await row.getByText(/· 1[12] min ago/).waitFor();
+    expect(await row.evaluate((it) => it === document.activeElement), "what has the focus keeps it");
+    expectNoComplaints(page);
+  },
+
   async "the list is searched, sorted and marked, and follows the folder"({ browser, studio }) {
     const page = await prepare({ browser, studio });
     await page.goto(studio.page("scope"));

@@ -67,8 +67,12 @@ export const tests = {
     await page.goto(studio.page("studies"));
     await page.waitForSelector("table.studies");
     const cells = await page.locator("table.studies tbody tr :is(th, td)").allTextContents();
-    expectEqual(cells.slice(0, 5), ["cuts", "● run", "6", "1", "0"], "name, state, recordings, failed, doubted");
-    expectEqual(cells[5], "liver, skin", "tissues");
+    expectEqual(
+      cells.slice(0, 6),
+      ["cuts", "● run", "6", "5", "1", "0"],
+      "name, state, recordings, how many count, failed, doubted",
+    );
+    expectEqual(cells[6], "liver, skin", "tissues");
     await appendFile(join(studio.folder, "cuts/study.toml"), "# a word\n");
     await page.reload();
     await until("it has changed", async () => (await page.textContent("table.studies td")) === "◐ changed since");
@@ -113,6 +117,18 @@ export const tests = {
     expectEqual(await report.textContent("h1"), "Study cuts", "the report's head");
     const style = await report.evaluate(() => getComputedStyle(document.querySelector("p.answer")).borderLeftWidth);
     expect(style !== "0px", "the report has its styles");
+    const address = report.url();
+    expect(!address.includes(studio.token), "its address does not tell the token");
+    await report.reload();
+    expectEqual(await report.textContent("h1"), "Study cuts", "it is there again after a reload");
+    const status = async (at) => (await fetch(at)).status;
+    expectEqual(await status(address), 200, "for whoever is given the address");
+    const elsewhere = address.replace("/api/study/report", "/api/study");
+    expectEqual(
+      [await status(elsewhere), await status(`${studio.origin}/?key=${new URL(address).searchParams.get("key")}`)],
+      [403, 403],
+      "and nothing else",
+    );
     await report.close();
     await page.locator("table.drawer").getByRole("link", { name: "liver_s1" }).click();
     await page.waitForSelector(".time_plot");

@@ -52,6 +52,7 @@ function routesOf(it) {
     ["GET /api/import/mapping", null, "of a file that was saved; import_pages.mjs asks"],
     ["GET /api/import/result", null, "of a file that was imported; import_pages.mjs asks"],
     ["GET /api/jobs", "Job[]", {}],
+    ["POST /api/key", "{ key: string }", { path: "/api/jobs/file", query: { job: "1", file: "0" } }],
     ["GET /api/laws/fitted", "FittedLaw[]", {}],
     ["GET /api/laws/hosts", "{ name: string; what: string }[]", {}],
     ["GET /api/law/exported", null, "a file"],

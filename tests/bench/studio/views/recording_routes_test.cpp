@@ -179,6 +179,13 @@ TEST(RecordingRoutes, SayWhyThereAreNoLoops) {
   EXPECT_THAT(loops["reason"].get<std::string>(), HasSubstr("too short"));
 }
 
+TEST(RecordingRoutes, HaveNoPictureOfWhatIsGoneWithoutAComplaint) {
+  ServedRecording served(test::punch({.seconds = 0.5}));
+  EXPECT_EQ(served.get("/api/recording/thumbnail", {{"id", "gone"}}).status, 200);
+  EXPECT_TRUE(served.get_json("/api/recording/thumbnail", {{"id", "gone"}}).is_null());
+  EXPECT_FALSE(served.get_json("/api/recording/thumbnail", {{"id", "a"}}).is_null());
+}
+
 TEST(RecordingRoutes, RefuseWhatCannotBeShown) {
   ServedRecording served(test::long_recording(100));
   EXPECT_EQ(served.get("/api/recording", {{"id", "b"}}).status, 404);

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <kerf/schema/recording.h>
+#include <kerf/schema/unfinished.h>
 
 #include "bench/studio/server/asker.h"
 #include "laws/law_file.h"
@@ -56,6 +57,22 @@ TEST_F(WorkspaceRoutes, TellNothingAnewUntilSomethingHasChanged) {
   fs::remove(folder_ / "b.law.toml");
   state = other_than(state, "it is gone");
   EXPECT_EQ(folder(state), json({{"unchanged", true}}));
+}
+
+TEST_F(WorkspaceRoutes, TellWhetherSomebodyStillWritesWhatIsNotClosed) {
+  schema::write_recording(folder_ / "cut.h5.partial", test::punch({.seconds = 0.5}));
+  json left = folder();
+  ASSERT_EQ(left.at("recordings").size(), 1U);
+  EXPECT_EQ(left["recordings"][0].at("partial"), true);
+  EXPECT_FALSE(left["recordings"][0].contains("written")) << "nobody does: it ended without being closed";
+  const std::string before = left.at("state");
+  {
+    const schema::WriteMark mark(folder_ / "cut.h5.partial");
+    const json now = folder(before);
+    ASSERT_TRUE(now.contains("recordings")) << "that somebody does is a change";
+    EXPECT_EQ(now["recordings"][0].at("written"), true);
+  }
+  EXPECT_FALSE(folder()["recordings"][0].contains("written"));
 }
 
 TEST_F(WorkspaceRoutes, ListEveryFileByWhatItIs) {

@@ -50,6 +50,30 @@ TEST_F(AccessControlOfAServer, AnswersGuessesMoreBrieflyAndStillAdmitsWhoKnows) 
   EXPECT_TRUE(access_.admits(asking()));
 }
 
+TEST_F(AccessControlOfAServer, HasAKeyForOneAddressThatOpensNoOther) {
+  HttpRequest request = asking();
+  request.headers.erase("x-kerf-token");
+  request.path = "/api/study/report";
+  request.query = {{"id", "1f"}};
+  const std::string key = access_.key_for(request.path, request.query);
+  EXPECT_EQ(key.find(access_.token()), std::string::npos);
+  request.query["key"] = key;
+  EXPECT_TRUE(access_.admits(request));
+  for (const auto& [path, id] : {std::pair("/api/study/report", "2f"), std::pair("/api/study/table", "1f")}) {
+    HttpRequest other = request;
+    other.path = path;
+    other.query["id"] = id;
+    EXPECT_FALSE(access_.admits(other)) << path << ' ' << id;
+  }
+  HttpRequest longer = request;
+  longer.query["name"] = "x";
+  EXPECT_FALSE(access_.admits(longer)) << "a further parameter";
+  request.method = "POST";
+  EXPECT_FALSE(access_.admits(request)) << "it is no way to act";
+  request.method = "GET";
+  EXPECT_NE(key, AccessControl({"127.0.0.1:80"}).key_for(request.path, request.query)) << "of another studio";
+}
+
 TEST_F(AccessControlOfAServer, RefusesActionsByAnAddressAlone) {
   HttpRequest request = asking();
   request.headers.erase("x-kerf-token");

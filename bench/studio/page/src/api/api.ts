@@ -1,4 +1,5 @@
 import { Requests } from "../requests";
+import { withLocalTimes } from "../ui/words/moments";
 import type { LoopStatus } from "./loop";
 import type { TraceView } from "./recordings";
 
@@ -77,6 +78,16 @@ export class Api {
     }));
   }
 
+  /** An address for a tab of its own, or to be saved: whoever it is given to can open what is there and nothing else. */
+  async opening(path: string, parameters: Parameters): Promise<string> {
+    const query = Object.fromEntries(Object.entries(parameters).map(([name, value]) => [name, String(value)]));
+    const { key } = await this.post<{ key: string }>("/api/key", { path, query });
+    return address(path, {
+      ...Object.fromEntries(Object.entries(query).map(([k, v]) => [k, encodeURIComponent(v)])),
+      key,
+    });
+  }
+
   /** Server-sent events; the browser connects again by itself. */
   stream(path: string, parameters: Parameters = {}): EventSource {
     return new EventSource(address(path, { ...parameters, token: this.token }));
@@ -145,7 +156,7 @@ function address(path: string, parameters: Parameters): string {
 function errorIn(text: string): string | null {
   try {
     const json = JSON.parse(text) as { error?: unknown };
-    return typeof json.error === "string" ? json.error : null;
+    return typeof json.error === "string" ? withLocalTimes(json.error) : null;
   } catch {
     return null;
   }

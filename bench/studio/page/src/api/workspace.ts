@@ -7,7 +7,8 @@ export interface WorkspaceRecording {
   name: string; // path within the workspace
   bytes: number;
   modified: string; // ISO 8601
-  partial: boolean; // not closed: being written, or left by a crash
+  partial: boolean; // not closed
+  written?: boolean; // not closed, since somebody is writing it; else who wrote it died
   seconds?: number; // where the server knows it without opening the file
   uuid?: string; // of the same
   damaged?: boolean; // HDF5 can make nothing of it
@@ -32,6 +33,7 @@ export interface WorkspaceSession {
   key: string; // "key file" or "passphrase"
   finished: boolean;
   answered: number;
+  running: boolean; // by whichever process
   apparatus: ApparatusItem[]; // what is to be confirmed before a run
   error: string;
 }

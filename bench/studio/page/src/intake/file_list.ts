@@ -68,8 +68,14 @@ class FileLine {
     else this.press.removeAttribute("aria-current");
     this.bar.hidden = file.state !== "sending" && file.state !== "stopped";
     this.bar.value = file.bytes > 0 ? file.have / file.bytes : 0;
+    const isUnfit = file.state === "ready" && file.problem !== "";
+    this.root.classList.toggle("file_unfit", isUnfit);
     this.words.textContent =
-      file.state === "sending" ? `${Math.floor((100 * file.have) / Math.max(1, file.bytes))} %` : words[file.state];
+      file.state === "sending"
+        ? `${Math.floor((100 * file.have) / Math.max(1, file.bytes))} %`
+        : isUnfit
+          ? "not ready"
+          : words[file.state];
     this.said.textContent = file.said;
     this.said.hidden = file.said === "";
     if (document.activeElement !== this.name) this.name.value = file.recording;

@@ -1,6 +1,7 @@
 import { ApiError } from "../api/api";
 import type { ImportResult, IntakeOverview, Mapping } from "../api/intake";
 import { button, element } from "../ui/dom";
+import { whyNoName } from "../ui/file_names";
 import type { PageContext } from "../ui/view";
 import { onDropped } from "./dropped";
 import { FileList } from "./file_list";
@@ -115,6 +116,7 @@ export class IntakePage {
       return;
     }
     this.choose(this.files.find((it) => it.state === "ready") ?? null);
+    for (const file of this.files) if (file !== this.chosen) void this.check(file);
     onDropped((files) => this.take(files), signal);
   }
 
@@ -167,7 +169,13 @@ export class IntakePage {
       [file.state, file.said] = ["refused", error instanceof Error ? error.message : String(error)];
     }
     if (file.upload && file.have === file.bytes && this.chosen?.state !== "ready") this.choose(file);
-    else this.show();
+    else await this.check(file);
+  }
+
+  /** What is not chosen is not looked at by the mapping. */
+  private async check(file: TakenFile): Promise<void> {
+    if (file.state === "ready") this.tried(file, await this.mapping.check(file));
+    this.show();
   }
 
   private choose(file: TakenFile | null): void {
@@ -192,27 +200,31 @@ export class IntakePage {
     this.show();
   }
 
-  private get toImport(): TakenFile[] {
+  private get waiting(): TakenFile[] {
     return this.files.filter((it) => it.state === "ready" || it.state === "failed");
   }
 
+  private get toImport(): TakenFile[] {
+    return this.waiting.filter((it) => it.problem === "");
+  }
+
   private show(): void {
-    for (const file of this.toImport) if (file.state === "ready") file.said = this.doubt(file);
+    for (const file of this.waiting) if (file.state === "ready") file.said = this.doubt(file) || file.problem;
     this.list.show(this.files, this.chosen);
     const ready = this.toImport;
     this.go.textContent = ready.length > 1 ? `Import ${ready.length} files` : "Import";
     this.go.disabled =
       ready.length === 0 || this.isStarting || this.job.isUnderWay || ready.some((it) => this.doubt(it) !== "");
     this.clear.hidden = !this.files.some((it) => it.state === "done");
-    this.go.hidden = ready.length === 0;
+    this.go.hidden = this.waiting.length === 0;
     this.hint.hidden = this.files.length > 0;
   }
 
   /** What is wrong with the name of its recording, said where it is typed. */
   private doubt(file: TakenFile): string {
     const name = file.recording;
-    if (!/^[A-Za-z0-9][A-Za-z0-9_.-]{0,79}$/.test(name))
-      return "A name has 1 to 80 letters, digits, '_', '-' or '.', the first a letter or digit.";
+    const why = whyNoName(name);
+    if (why) return why;
     if (this.taken.has(name)) return `${name}.h5 is there already: choose another name.`;
     if (this.files.some((it) => it !== file && it.recording === name && it.state !== "done" && it.state !== "refused"))
       return `Two files are to become ${name}.h5: choose another name for one.`;

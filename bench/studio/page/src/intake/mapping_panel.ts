@@ -1,3 +1,4 @@
+import { ApiError } from "../api/api";
 import type { Mapping, Preview } from "../api/intake";
 import { button, element, labelled, setOptions } from "../ui/dom";
 import { Latest } from "../ui/latest";
@@ -110,6 +111,20 @@ export class MappingPanel {
     return this.known(file) ?? (isGuess(preview) ? null : { map: preview.suggested.map, options: {} });
   }
 
+  /** Whether something would come of a file, before anybody has chosen it. @returns why it is refused */
+  async check(file: TakenFile): Promise<string> {
+    try {
+      const known = this.known(file) ?? { map: "", options: {} };
+      let preview = await this.ask(file, known);
+      if (!known.map) preview = await this.ask(file, { map: preview.suggested.map, options: {} });
+      file.problem = problemOf(preview);
+      return "";
+    } catch (error) {
+      if (error instanceof ApiError && error.status === 400) return error.message;
+      return ""; // it is looked at again when it is chosen
+    }
+  }
+
   private known(file: TakenFile): Mapping | undefined {
     return file.mapping ?? this.byHand.get(file.columns);
   }
@@ -152,6 +167,7 @@ export class MappingPanel {
       return;
     }
     if (!preview) return;
+    file.problem = problemOf(preview);
     this.tried(file, "");
     this.table.show(preview, this.map.value);
     this.say(preview, isGuess(preview) && !this.known(file));
@@ -175,15 +191,14 @@ export class MappingPanel {
   }
 
   private say(preview: Preview, isGuessed: boolean): void {
-    const { problem } = preview;
-    this.fits = problem === "" && preview.rows > 0;
+    const problem = problemOf(preview);
+    this.fits = problem === "";
     this.confirm.hidden = !this.fits || !isGuessed;
     this.verdict.className = this.fits && !isGuessed ? "verdict" : "verdict wrong";
     const part = preview.is_whole ? "" : "of the first million bytes ";
     const rows = `${preview.rows.toLocaleString("en-GB")} rows ${part}over ${(preview.seconds ?? 0).toPrecision(4)} s`;
-    const none = "Nothing would come in: no line has a number in each column that is chosen.";
     const guess = `No line names the columns: what each is below, and in what unit, is a guess (${rows}).`;
-    this.verdict.textContent = problem || (this.fits ? (isGuessed ? guess : `It fits: ${rows}.`) : none);
+    this.verdict.textContent = problem || (isGuessed ? guess : `It fits: ${rows}.`);
     const said = [...preview.notes, ...preview.warnings];
     this.warnings.hidden = said.length === 0;
     this.warnings.replaceChildren(
@@ -219,6 +234,12 @@ export class MappingPanel {
 /** What tells files of one kind from others. */
 function columnsOf({ columns }: Preview): string {
   return JSON.stringify(columns.map((it) => it.heading));
+}
+
+/** Why nothing would come of a file; empty if something would. */
+function problemOf({ problem, rows }: Preview): string {
+  if (problem || rows > 0) return problem;
+  return "Nothing would come in: no line has a number in each column that is chosen.";
 }
 
 function isGuess({ layout }: Preview): boolean {

@@ -14,6 +14,7 @@ export interface TakenFile {
   said: string; // what there is to say of it, in one line
   recording: string; // the name that its recording is to have
   mapping: Mapping | null; // as a person has made or confirmed it; null: nobody has
+  problem: string; // why nothing would come of it as it is mapped; empty: it would, or nobody has looked yet
   columns: string; // what they are called, as one text; empty: not looked at yet
   result: (ImportResult & { state: "done" }) | null;
   sending: AbortController;
@@ -33,6 +34,7 @@ export function takenFile(name: string, bytes: number, file: File | null): Taken
     said: "",
     recording: "",
     mapping: null,
+    problem: "",
     columns: "",
     result: null,
     sending: new AbortController(),

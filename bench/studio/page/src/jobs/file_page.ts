@@ -1,5 +1,6 @@
 import type { Trashed } from "../api/jobs";
-import { bytes, date } from "../recordings/recording_list";
+import { bytes } from "../recordings/recording_list";
+import { date } from "../ui/words/moments";
 import { button, element, labelled } from "../ui/dom";
 import type { Context } from "../ui/view";
 

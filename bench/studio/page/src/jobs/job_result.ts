@@ -18,41 +18,57 @@ const pagesOf: Readonly<Record<string, string>> = {
 /** What a job has made: pictures, pages, tables and texts, each where it can be looked at. */
 export function jobResult(api: Api, job: number, files: readonly MadeFile[], signal: AbortSignal): HTMLElement {
   const root = element("div", { class: "job_result" });
-  const numbered = files.map((file, number) => ({ file, number, address: addressOf(api, job, number) }));
-  for (const { file, address } of numbered.filter((it) => it.file.what === "picture")) {
-    const image = element("img", { src: address, alt: file.name, loading: "lazy" });
-    root.append(
-      element(
-        "figure",
-        {},
-        image,
-        element("figcaption", {}, element("a", { href: address, download: last(file.name) }, file.name)),
-      ),
-    );
+  const numbered = files.map((file, number) => ({ file, number }));
+  const lead = (number: number, ...nodes: (HTMLAnchorElement | HTMLImageElement)[]): void =>
+    leadTo(api, job, number, nodes, signal);
+  for (const { file, number } of numbered.filter((it) => it.file.what === "picture")) {
+    const image = element("img", { alt: file.name, loading: "lazy" });
+    const save = element("a", { download: last(file.name) }, file.name);
+    lead(number, image, save);
+    root.append(element("figure", {}, image, element("figcaption", {}, save)));
   }
   for (const { file, number } of numbered.filter((it) => it.file.what === "table" || it.file.what === "text"))
     root.append(folded(api, job, number, file, signal));
-  const list = numbered.map(({ file, address }) => element("li", {}, ...lineOf(file, address)));
+  const list = numbered.map(({ file, number }) =>
+    element("li", {}, ...lineOf(file, (...links) => lead(number, ...links))),
+  );
   if (list.length > 0) root.append(element("h3", {}, "Files"), element("ul", { class: "made" }, ...list));
   return root;
 }
 
-function addressOf(api: Api, job: number, number: number): string {
-  return `/api/jobs/file?job=${job}&file=${number}&token=${encodeURIComponent(api.token)}`;
+/** Gives links and pictures their address, once the studio has made it. */
+function leadTo(
+  api: Api,
+  job: number,
+  file: number,
+  nodes: readonly (HTMLAnchorElement | HTMLImageElement)[],
+  signal: AbortSignal,
+): void {
+  api.opening("/api/jobs/file", { job, file }).then(
+    (address) => {
+      if (signal.aborted) return;
+      for (const it of nodes) it.setAttribute(it instanceof HTMLAnchorElement ? "href" : "src", address);
+    },
+    () => {}, // the bar says that the studio does not answer
+  );
 }
 
 function last(name: string): string {
   return name.replace(/.*\//, "");
 }
 
-function lineOf(file: MadeFile, address: string): (Node | string)[] {
+function lineOf(file: MadeFile, lead: (...links: HTMLAnchorElement[]) => void): (Node | string)[] {
   const page = pagesOf[file.kind];
   const parts: (Node | string)[] = [];
   if (page && file.id) parts.push(element("a", { href: `#/${page}/${file.id}` }, file.name));
-  else if (file.what === "page")
-    parts.push(element("a", { href: address, target: "_blank", rel: "noopener" }, file.name));
-  else parts.push(file.name);
-  parts.push(` (${bytes(file.bytes)}) `, element("a", { href: address, download: last(file.name) }, "Save"));
+  else if (file.what === "page") {
+    const open = element("a", { target: "_blank", rel: "noopener" }, file.name);
+    lead(open);
+    parts.push(open);
+  } else parts.push(file.name);
+  const save = element("a", { download: last(file.name) }, "Save");
+  lead(save);
+  parts.push(` (${bytes(file.bytes)}) `, save);
   return parts;
 }
 

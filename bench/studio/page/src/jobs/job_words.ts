@@ -1,5 +1,6 @@
 import type { Job } from "../api/jobs";
-import { date, length } from "../recordings/recording_list";
+import { length } from "../recordings/recording_list";
+import { date } from "../ui/words/moments";
 
 // What a job is said to be, wherever it is shown.
 

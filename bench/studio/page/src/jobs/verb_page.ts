@@ -80,6 +80,7 @@ export class VerbPage {
     const known = sessions.filter((it) => listed && namesFor(listed, names).includes(it));
     if (listed && known.length > 0) this.fields.get(listed.name)?.set(known);
     const output = this.form.values.find((it) => it.kind === "output" && it.name === "--output");
+    if (given[0]?.endsWith(".partial")) return; // it is closed under the name that it was to have
     const stem = (given[0] ?? "").replace(/.*\//, "").replace(/(\.law\.toml|\.protocol\.toml|\.h5)$/, "");
     const verb = this.form.verb.replace(/.* /, "");
     if (output) this.fields.get(output.name)?.set(freeName(stem ? `${stem}-${verb}` : verb, output, names));
@@ -121,7 +122,7 @@ export class VerbPage {
 
 /** What the verb is about, though it may be left out. */
 function isSubject(value: VerbValue): boolean {
-  return !value.name.startsWith("-") || value.name === "--through" || value.name === "--device";
+  return !value.name.startsWith("-") || ["--through", "--device", "--subject", "--subjects"].includes(value.name);
 }
 
 /** The name, or with a number behind it where it is taken. */

@@ -1,5 +1,5 @@
 import type { Recording, RecordingInspection } from "../api/recordings";
-import type { Workspace } from "../api/workspace";
+import type { Workspace, WorkspaceRecording } from "../api/workspace";
 import { element } from "../ui/dom";
 import type { Context, OpenRecording, PageContext } from "../ui/view";
 import { factsInShort } from "./facts";
@@ -62,7 +62,8 @@ export class RecordingPage {
         this.context.folder(),
         api.get<Recording>("/api/recording", { id }, signal),
       ]);
-      const name = workspace.recordings.find((it) => it.id === id)?.name ?? id;
+      const entry = workspace.recordings.find((it) => it.id === id);
+      const name = entry?.name ?? id;
       this.recording = {
         ...{ id, name, about, workspace },
         inspection: this.inspectOnce(id),
@@ -77,8 +78,7 @@ export class RecordingPage {
         element("span", { class: "head_file" }, name.slice(file)),
       );
       this.head.title = name;
-      this.facts.textContent = factsInShort(about);
-      this.facts.title = this.facts.textContent;
+      this.tellFacts(about, entry);
       this.show();
     } catch (error) {
       if (signal.aborted) return;
@@ -86,6 +86,11 @@ export class RecordingPage {
       const why = error instanceof Error ? error.message : String(error);
       this.panel.replaceChildren(element("p", { class: "empty" }, `${why}. Choose another in the list.`));
     }
+  }
+
+  private tellFacts(about: Recording, entry: WorkspaceRecording | undefined): void {
+    const text = factsInShort(about, entry);
+    if (this.facts.textContent !== text) this.facts.textContent = this.facts.title = text;
   }
 
   private beginWriting(): (written: boolean, read?: () => void) => void {
@@ -123,6 +128,7 @@ export class RecordingPage {
     const { id, name, workspace: read } = this.recording;
     const then = read.recordings.find((it) => it.id === id);
     const now = workspace.recordings.find((it) => it.id === id);
+    this.tellFacts(this.recording.about, now);
     const isOther = now && !now.partial && then && (now.modified !== then.modified || now.bytes !== then.bytes);
     const found = !now ? "gone" : now.damaged ? "damaged" : isOther ? "changed" : "";
     if (found === this.found) return;

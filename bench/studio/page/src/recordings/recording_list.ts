@@ -1,5 +1,7 @@
 import type { Workspace, WorkspaceRecording } from "../api/workspace";
 import { element, labelled } from "../ui/dom";
+import { isLeftOpen, repairAddress } from "./left_open";
+import { date } from "../ui/words/moments";
 import { plain } from "../ui/numbers";
 
 const shownAtOnce = 300;
@@ -68,19 +70,18 @@ function row(it: WorkspaceRecording, timed: boolean): HTMLElement {
       "td",
       {},
       element("a", { href: `#/recording/${it.id}/time` }, it.name),
-      it.partial
-        ? element(
-            "p",
-            { class: "partial" },
-            "Not closed: being written, or left by a crash. Then mend it: ",
-            element("code", {}, `kerf repair ${it.name}`),
-          )
-        : null,
+      it.partial ? element("p", { class: "partial" }, ...partialInWords(it)) : null,
     ),
     timed ? element("td", { class: "number" }, it.seconds === undefined ? "–" : length(it.seconds)) : null,
     element("td", { class: "number" }, bytes(it.bytes)),
     element("td", {}, date(it.modified)),
   );
+}
+
+function partialInWords(it: WorkspaceRecording): (string | HTMLElement)[] {
+  if (!isLeftOpen(it)) return ["Being recorded."];
+  const way = element("a", { href: repairAddress(it) }, "close it");
+  return ["It ended without being closed: ", way, " (", element("code", {}, `kerf repair ${it.name}`), ")."];
 }
 
 /** 3725 -> "1 h 2 min 5 s". */
@@ -96,13 +97,6 @@ export function bytes(count: number): string {
   if (count < 1e6) return `${plain(count / 1e3)} kB`;
   if (count < 1e9) return `${plain(count / 1e6)} MB`;
   return `${plain(count / 1e9)} GB`;
-}
-
-const clock = new Intl.DateTimeFormat("en-GB", { dateStyle: "medium", timeStyle: "short" });
-
-export function date(iso: string): string {
-  const at = new Date(iso);
-  return Number.isNaN(at.getTime()) ? iso : clock.format(at);
 }
 
 /** What somebody sees who has none. */

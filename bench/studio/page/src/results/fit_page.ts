@@ -65,8 +65,8 @@ export class FitPage {
         { class: "quiet" },
         `${of?.name ?? ""}, axis ${of?.axis ?? ""}: ${fit.samples} samples. ` +
           `JND ${plain(fit.jnd)} ${unit}; a straight line leaves ${plain(fit.line_rmse)} ${unit}. ` +
-          "Errors are over every row in contact; those of the tab Law are over the averaged cycle, without what " +
-          "cycles differ by.",
+          "Errors are over every row in contact, of whose force the JND is; those of the tab Law, and its JND, are of the " +
+          "averaged cycle, without what cycles differ by.",
       ),
       this.table.root,
       element(

@@ -1,8 +1,11 @@
 import type { LoopStatus } from "../api/loop";
-import type { Workspace } from "../api/workspace";
+import type { Workspace, WorkspaceRecording } from "../api/workspace";
+import { isLeftOpen, repairAddress } from "../recordings/left_open";
 import { button, element, labelled, select, setOptions } from "../ui/dom";
 import type { Context } from "../ui/view";
 import { lackingFor, lawsToPick, shortName } from "../laws";
+
+const mostLeft = 3;
 
 /** The panel beside the scope: device, law, force and recording. Its parts keep their places, whatever the loop does. */
 export class ScopeControls {
@@ -11,6 +14,8 @@ export class ScopeControls {
   private laws: Workspace["laws"] = [];
   private saved = ""; // the recording that has just ended
   private folder: Workspace | null = null;
+  private left: WorkspaceRecording[] = []; // not closed, and nobody writes them
+  private silent_s = 0;
   private readonly device = element("input", { type: "text", autocomplete: "off", spellcheck: "false" });
   private readonly sensor = element("input", {
     type: "text",
@@ -32,7 +37,7 @@ export class ScopeControls {
     value: nameOfNow(),
   });
   private readonly record = button("Record", () => this.toggleRecording(), { disabled: true });
-  private readonly recorded = element("p", { class: "recorded quiet" });
+  private readonly recorded = element("div", { class: "recorded quiet" });
   private readonly state = element("p", { class: "ended", role: "status" });
 
   constructor(private readonly context: Context) {
@@ -44,7 +49,8 @@ export class ScopeControls {
       setOptions(this.scene, [{ value: "", text: "none" }, ...scenes]);
       this.start.disabled = false;
       this.offerWhatSuits();
-      if (this.saved !== "") this.showSaved();
+      this.left = workspace.recordings.filter(isLeftOpen);
+      if (this.status) this.say(this.status);
     });
     this.root = element(
       "div",
@@ -81,7 +87,6 @@ export class ScopeControls {
     this.law.disabled = !status.running;
     this.record.disabled = !status.running;
     this.render.disabled = !status.running;
-    put(this.rendered, renderedText(status));
     this.record.textContent = status.recording ? "Stop" : "Record";
     this.record.setAttribute("aria-label", status.recording ? "Stop recording" : "Record");
     this.record.classList.toggle("firm", status.recording !== null);
@@ -92,10 +97,49 @@ export class ScopeControls {
       this.context.lookAtFolder();
     }
     if (status.recording || status.recording_failure) this.saved = "";
-    if (this.saved === "") put(this.recorded, recordedText(status));
-    else this.showSaved();
     this.recorded.classList.toggle("alarming", status.recording_failure !== "");
-    put(this.state, stateText(status));
+    this.say(status);
+  }
+
+  /** Nobody answers: what was said last is no longer known to be so. */
+  showStale(seconds: number): void {
+    this.silent_s = seconds;
+    if (this.status) this.say(this.status);
+  }
+
+  private say(status: LoopStatus): void {
+    const isUnknown = this.silent_s > 0 && (status.running || status.starting === true);
+    put(
+      this.state,
+      isUnknown ? `No answer for ${this.silent_s} s: whether the loop runs is not known.` : stateText(status),
+    );
+    put(this.rendered, isUnknown ? "" : renderedText(status));
+    const { recording } = status;
+    if (this.saved !== "") this.showSaved();
+    else if (isUnknown && recording)
+      put(this.recorded, `${recording.name}: ${recordedText(status)} were written when the studio last answered.`);
+    else if (!recording && !status.recording_failure && this.left.length > 0) this.showLeft();
+    else put(this.recorded, recordedText(status));
+  }
+
+  /** What whoever recorded left behind as they died. */
+  private showLeft(): void {
+    const shown = this.left.slice(0, mostLeft);
+    const more = this.left.length - shown.length;
+    const key = `${shown.map((it) => it.id).join(" ")} ${more}`;
+    if (this.recorded.dataset.shown === key && this.recorded.childElementCount > 0) return;
+    this.recorded.dataset.shown = key;
+    const items = shown.map((it) =>
+      element(
+        "li",
+        {},
+        it.name,
+        " ended without being closed: ",
+        element("a", { href: repairAddress(it) }, "close it"),
+      ),
+    );
+    if (more > 0) items.push(element("li", {}, `and ${more} more`));
+    this.recorded.replaceChildren("Not recording", element("ul", { class: "left_open" }, ...items));
   }
 
   /** What the device has no axis for stands in the list with the reason, and cannot be picked. */
@@ -112,8 +156,8 @@ export class ScopeControls {
   private showSaved(): void {
     const text = `Saved as ${this.saved}`;
     const id = this.folder?.recordings.find((it) => it.name === this.saved)?.id;
-    if (this.recorded.dataset.saved === `${text} ${id ?? ""}`) return;
-    this.recorded.dataset.saved = `${text} ${id ?? ""}`;
+    if (this.recorded.dataset.shown === `${text} ${id ?? ""}`) return;
+    this.recorded.dataset.shown = `${text} ${id ?? ""}`;
     this.recorded.replaceChildren(id ? element("a", { href: `#/recording/${id}/time` }, text) : text);
   }
 

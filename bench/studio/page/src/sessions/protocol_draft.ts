@@ -8,12 +8,14 @@ export interface DesignKind {
   readonly isJudged?: boolean; // an answer is right or wrong
   readonly trials: number;
   readonly more?: string; // lines of its own
+  readonly asks?: string; // a question as somebody may put it; none: the design has its own
 }
 
 export const designs: readonly DesignKind[] = [
   { name: "abx", words: "ABX: X is A or B. Which one?", laws: "some", isJudged: true, trials: 40 },
   {
     name: "2ifc",
+    asks: "Which one was stiffer?",
     words: "Two in a row, one is the signal: which one?",
     laws: "two",
     hasSignal: true,
@@ -29,25 +31,55 @@ export const designs: readonly DesignKind[] = [
     more: "odd_one_out = true",
   },
   { name: "same-different", words: "Two in a row: same or different?", laws: "some", isJudged: true, trials: 48 },
-  { name: "yes-no", words: "One: was the signal there?", laws: "two", hasSignal: true, isJudged: true, trials: 60 },
-  { name: "preference", words: "Two: which is more like …?", laws: "some", trials: 10 },
+  {
+    name: "yes-no",
+    asks: "Did you feel the tear?",
+    words: "One: was the signal there?",
+    laws: "two",
+    hasSignal: true,
+    isJudged: true,
+    trials: 60,
+  },
+  {
+    name: "preference",
+    asks: "Which one feels more like skin?",
+    words: "Two: which is more like …?",
+    laws: "some",
+    trials: 10,
+  },
   {
     name: "constant",
+    asks: "Which one was stronger?",
     words: "JND by constant levels: which is stronger?",
     laws: "one",
     levels: "-0.3, -0.2, -0.1, 0, 0.1, 0.2, 0.3",
     trials: 20,
   },
-  { name: "staircase", words: "JND by a staircase, 1 up and 2 down", laws: "one", isJudged: true, trials: 80 },
-  { name: "quest", words: "JND by QUEST+", laws: "one", isJudged: true, trials: 40 },
+  {
+    name: "staircase",
+    asks: "Which one was stronger?",
+    words: "JND by a staircase, 1 up and 2 down",
+    laws: "one",
+    isJudged: true,
+    trials: 80,
+  },
+  { name: "quest", asks: "Which one was stronger?", words: "JND by QUEST+", laws: "one", isJudged: true, trials: 40 },
   {
     name: "magnitude",
+    asks: "How strong was it?",
     words: "A number for how strong it was",
     laws: "one",
     levels: "-0.6, -0.4, -0.2, 0, 0.3, 0.6",
     trials: 6,
   },
-  { name: "rating", words: "A rating of each on seven steps", laws: "some", trials: 6, more: "points = 7" },
+  {
+    name: "rating",
+    asks: "How much did it feel like skin?",
+    words: "A rating of each on seven steps",
+    laws: "some",
+    trials: 6,
+    more: "points = 7",
+  },
 ];
 
 export interface DraftLaw {

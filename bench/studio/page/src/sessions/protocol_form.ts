@@ -182,6 +182,12 @@ export class ProtocolForm {
     show("signal", kind.hasSignal === true);
     show("levels", kind.levels !== undefined);
     show("ends", kind.name === "rating");
+    const question = this.field("question");
+    question.required = kind.asks !== undefined;
+    question.placeholder = kind.asks ? `such as: ${kind.asks}` : "";
+    this.rows.get("question")!.querySelector("span")!.textContent = kind.asks
+      ? "Question (needed: this design has none of its own)"
+      : "Question (empty: the design's)";
     setOptions(
       this.signal,
       laws.map((it) => ({ value: it.name, text: it.name })),

@@ -39,17 +39,31 @@ export class StudyPage {
   }
 }
 
-function address(context: Context, study: Study, what: string, more = ""): string {
-  return `/api/study/${what}?id=${study.id}${more}&token=${context.api.token}`;
+/** A link to a file of the study. */
+function link(
+  { api, signal }: Context,
+  study: Study,
+  [what, more]: readonly [what: string, more: Record<string, string>],
+  attributes: Record<string, string>,
+  text: string,
+): HTMLElement {
+  const made = element("a", attributes, text);
+  api.opening(`/api/study/${what}`, { id: study.id, ...more }).then(
+    (address) => signal.aborted || (made.href = address),
+    () => {}, // the bar says that the studio does not answer
+  );
+  return made;
 }
 
 function links(context: Context, study: Study): (HTMLElement | null)[] {
   return [
     element("a", { class: "go", href: "#/studies" }, "All studies"),
     study.report
-      ? element(
-          "a",
-          { class: "go", href: address(context, study, "report"), target: "_blank", rel: "noopener" },
+      ? link(
+          context,
+          study,
+          ["report", {}],
+          { class: "go", target: "_blank", rel: "noopener" },
           "Report (in a new tab)",
         )
       : null,
@@ -109,13 +123,13 @@ function ignored(study: Study): HTMLElement | null {
 
 function tables(context: Context, study: Study): HTMLElement | null {
   if (study.tables.length === 0) return null;
-  const link = (name: string): HTMLElement =>
-    element("li", {}, element("a", { href: address(context, study, "table", `&name=${name}`), download: name }, name));
+  const table = (name: string): HTMLElement =>
+    element("li", {}, link(context, study, ["table", { name }], { download: name }, name));
   return element(
     "section",
     {},
     element("h2", {}, "Tables"),
     element("p", { class: "quiet" }, "One row an observation; data_dictionary.csv says what each column is."),
-    element("ul", { class: "links" }, ...study.tables.map(link)),
+    element("ul", { class: "links" }, ...study.tables.map(table)),
   );
 }

@@ -1,6 +1,6 @@
 import type { StudyEntry } from "../api/studies";
 import { element } from "../ui/dom";
-import { date } from "../recordings/recording_list";
+import { date } from "../ui/words/moments";
 
 const words: Record<StudyEntry["state"], string> = { "not run": "not run", run: "run", changed: "changed since" };
 const shapes: Record<StudyEntry["state"], string> = { "not run": "○", run: "●", changed: "◐" };

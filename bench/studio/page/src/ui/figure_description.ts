@@ -25,6 +25,7 @@ export interface FigureArea {
   colour: Colour;
   /** What was measured, from the smallest to the largest value of a stretch: as solid as a line. Else a faint band. */
   extremes?: boolean;
+  each?: number; // of extremes: how much of x each pair of them is of
   name?: string;
   marked?: boolean;
 }
@@ -59,6 +60,13 @@ export interface FigureBand {
   colour: Colour;
   label?: string; // none: not in the legend
 }
+/** What is told of a stretch of x, or of a place, which begins and ends there: on pictures of recordings over time. */
+export interface FigureMark {
+  kind: "closing" | "opening" | "gap" | "cycle" | "flagged" | "clipped" | "event";
+  begin: number;
+  end: number;
+  texts: readonly string[]; // the first for which there is room is written
+}
 export interface Figure {
   title?: string;
   x_label: string; // with its unit: "time [s]"
@@ -66,6 +74,7 @@ export interface Figure {
   curves: FigureCurve[];
   areas?: FigureArea[];
   bands?: FigureBand[];
+  marks?: FigureMark[];
   ordered?: string; // what the order of its curves is, in the words of the legend
   cells: FigureCells;
   vertical: FigureMarker[];

@@ -1,6 +1,7 @@
 import type { ProtocolCheck, ProtocolText } from "../api/protocols";
 import { ProtocolForm } from "../sessions/protocol_form";
 import { button, element, labelled } from "../ui/dom";
+import { whyNoName } from "../ui/file_names";
 import { Latest } from "../ui/latest";
 import type { PageContext, View } from "../ui/view";
 
@@ -56,7 +57,10 @@ function mount(root: HTMLElement, context: PageContext): () => void {
     spellcheck: "false",
     autocomplete: "off",
     input: () => changed(),
+    "aria-describedby": "protocol_name_why",
   });
+  const nameWhy = element("p", { id: "protocol_name_why", class: "wrong", role: "status" });
+  let taken: ReadonlySet<string> = new Set(); // names of protocols of the folder
   const text = element("textarea", {
     class: "protocol_text",
     spellcheck: "false",
@@ -84,11 +88,25 @@ function mount(root: HTMLElement, context: PageContext): () => void {
     written();
   };
 
+  /** Said while it is typed, not when it is refused. */
+  const isNameFit = (): boolean => {
+    const typed = name.value.trim();
+    const why =
+      typed === "" ? "" : whyNoName(typed) || (taken.has(typed) ? `${typed}.protocol.toml is there already.` : "");
+    if (nameWhy.textContent !== why) nameWhy.textContent = why;
+    nameWhy.hidden = why === "";
+    name.setAttribute("aria-invalid", String(why !== ""));
+    return why === "";
+  };
+
   const written = (): void => {
+    isNameFit();
     if (!isByHand) text.value = form.text(name.value.trim());
     byHand.hidden = !isByHand || place.id !== "";
     keep(place.id, isTouched && text.value !== saved ? { name: name.value, text: text.value } : null);
     save.disabled = true;
+    verdict.setAttribute("aria-busy", "true"); // what it says is of an earlier text
+    latest.end(); // and so is an answer that is on its way
     clearTimeout(timer);
     timer = window.setTimeout(() => void check(), after_ms);
   };
@@ -99,7 +117,8 @@ function mount(root: HTMLElement, context: PageContext): () => void {
       const answer = await latest.ask(() => api.post<ProtocolCheck>("/api/protocol/check", order));
       if (!answer) return;
       const isNamed = place.id !== "" || name.value.trim() !== "";
-      save.disabled = answer.problem !== "" || !isNamed || text.value === saved;
+      save.disabled = answer.problem !== "" || !isNamed || !isNameFit() || text.value === saved;
+      verdict.removeAttribute("aria-busy");
       verdict.className = answer.problem ? "verdict wrong" : "verdict";
       verdict.textContent = inWords(answer) + (isNamed || answer.problem ? "" : " Name it to save it.");
     } catch (error) {
@@ -138,7 +157,7 @@ function mount(root: HTMLElement, context: PageContext): () => void {
     element(
       "div",
       { class: "protocol_columns" },
-      place.id ? null : element("div", {}, labelled("Name of the file", name), form.root),
+      place.id ? null : element("div", {}, labelled("Name of the file", name), nameWhy, form.root),
       element(
         "section",
         { "aria-label": "The protocol" },
@@ -150,6 +169,10 @@ function mount(root: HTMLElement, context: PageContext): () => void {
     ),
   );
   context.onFolder((workspace) => {
+    const ending = ".protocol.toml";
+    taken = new Set(
+      workspace.files.filter((it) => it.kind === "protocol").map((it) => it.name.slice(0, -ending.length)),
+    );
     form.offer(workspace.laws);
     form.device = workspace.device;
     if (!isByHand) written();

@@ -243,6 +243,7 @@ class Scope {
   }
 
   private showStale(seconds: number): void {
+    this.controls.showStale(seconds);
     const text = seconds > 0 ? `Stale since ${seconds} s` : "";
     if (this.stale.textContent !== text) this.stale.textContent = text;
     this.root.classList.toggle("is_stale", seconds > 0);

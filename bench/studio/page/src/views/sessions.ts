@@ -4,6 +4,7 @@ import type { SessionState } from "../api/sessions";
 import type { Workspace, WorkspaceSession } from "../api/workspace";
 import { apparatusFields } from "../sessions/apparatus";
 import { notes } from "../sessions/notes";
+import { whereItStands } from "../sessions/standing";
 import { folderQuality, liveQuality } from "../sessions/quality_panel";
 import { button, element, labelled } from "../ui/dom";
 import type { Context, View } from "../ui/view";
@@ -66,12 +67,6 @@ function progressCard(context: Context): {
       written.show(state);
     },
   };
-}
-
-function whereItStands(session: WorkspaceSession): string {
-  if (session.error) return session.error;
-  if (session.finished) return "finished";
-  return session.answered > 0 ? `${session.answered} trials done` : "not begun";
 }
 
 /** Of a session that cannot be begun or gone on with: how it stands, and what is done with it. */
@@ -197,6 +192,10 @@ function waysOf(workspace: Workspace, hasKeyFile: boolean): HTMLElement {
   );
 }
 
+function isOther(one: WorkspaceSession, other: WorkspaceSession | undefined): boolean {
+  return one.id !== other?.id || whereItStands(one) !== whereItStands(other);
+}
+
 function mount(root: HTMLElement, context: Context): () => void {
   const card = progressCard(context);
   const list = element("ul", { class: "files", "aria-label": "Sessions" });
@@ -238,8 +237,8 @@ function mount(root: HTMLElement, context: Context): () => void {
     form.querySelector("input")?.focus();
   };
 
-  const refresh = async (): Promise<void> => {
-    const workspace = await context.folder();
+  const refresh = async (): Promise<void> => show(await context.folder());
+  const show = (workspace: Workspace): void => {
     device = workspace.device;
     known = workspace.sessions;
     ways.replaceChildren(waysOf(workspace, hasKeyFile));
@@ -250,7 +249,7 @@ function mount(root: HTMLElement, context: Context): () => void {
           {},
           element("a", { class: "name", href: `#/sessions/${it.id}` }, it.name),
           element("span", {}, it.subject ? `subject ${it.subject}` : ""),
-          element("span", { class: "quiet" }, running === it.name ? "running" : whereItStands(it)),
+          element("span", { class: "quiet" }, whereItStands(it)),
           button(it.answered > 0 ? "Go on" : "Begin", () => choose(it), {
             disabled: !mayRun(it),
             "aria-label": `${it.answered > 0 ? "Go on with" : "Begin"} ${it.name}`,
@@ -275,6 +274,8 @@ function mount(root: HTMLElement, context: Context): () => void {
     "click",
     () => void context.api.post("/api/session/stop").then(look).catch(context.complain),
   );
+  // A session that another process runs goes on, too.
+  context.onFolder((workspace) => workspace.sessions.some((it, k) => isOther(it, known[k])) && show(workspace));
   look()
     .then(refresh) // which offers what there is a key for
     .then(() => {

@@ -254,6 +254,8 @@ export const tests = {
     await until("the second is refused in a line", async () =>
       (await two.textContent(".cycle_trouble")).includes("have changed since you began. One saved at"),
     );
+    const refusal = await two.textContent(".cycle_trouble");
+    expect(!/\dT\d\d:/.test(refusal) && /saved at \d+ \w+ \d{4}, \d\d:\d\d/.test(refusal), `by the wall: ${refusal}`);
     await two.getByRole("button", { name: "Load them, mine on top" }).click();
     await until("its own change is there still", async () => (await state(two)) === "not saved");
     await save(two);

@@ -56,6 +56,26 @@ async function importAll(page) {
 }
 
 export const tests = {
+  async SaysOfAFileWithoutATimeThatItIsNotReadyAndImportsTheOthers({ browser, studio }) {
+    const page = await prepare({ browser, studio });
+    const good = await source(studio, "good.csv", press());
+    const lines = Array.from({ length: 400 }, (_, i) => `${(10 * Math.sin(i / 20)).toFixed(3)},${(i * i) % 17}`);
+    const timeless = await source(studio, "timeless.csv", `Angle [deg],Load [N]\n${lines.join("\n")}\n`);
+    await choose(page, good, timeless); // the first is the one that is shown
+    await fits(page);
+    const line = page.locator(".file_list li").filter({ hasText: "timeless.csv" });
+    await line.getByText("not ready", { exact: true }).waitFor();
+    expect(/time/i.test(await line.locator(".file_said").textContent()), "why");
+    await page.getByRole("button", { name: "Import", exact: true }).click();
+    await until("the other comes in", async () => (await page.locator(".file_list li.file_done").count()) === 1);
+    expectEqual(await line.locator(".file_state").textContent(), "not ready", "and this one stays");
+    await page.locator(".file_list").getByRole("button", { name: "timeless.csv", exact: true }).click();
+    expect(await page.getByRole("button", { name: "Import", exact: true }).isDisabled(), "there is nothing to import");
+    await page.getByLabel(/Rate/).first().fill("1000");
+    await line.getByText("ready", { exact: true }).waitFor();
+    expectNoComplaints(page);
+  },
+
   async ImportsAFileAsTheProgramDoes({ browser, studio }) {
     const page = await prepare({ browser, studio });
     const file = await source(studio, "Schnitt 3 (Süd).csv", press());
@@ -100,7 +120,7 @@ export const tests = {
     );
     expectEqual(
       (await page.locator(`${unitOf(3)} option`).allTextContents()).slice(0, 5),
-      ["– unit –", "N", "mN", "kN", "gf"],
+      ["– unit –", "N", "mN", "kN", "uN"],
       "units of a force",
     );
     await page.selectOption(unitOf(3), "N");

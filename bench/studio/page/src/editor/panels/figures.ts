@@ -19,11 +19,15 @@ export class Figures {
     private readonly drawing: Drawing,
     private readonly announce: (text: string) => void,
   ) {
-    const heads = ["Error (rms)", "in JNDs", "Worst", "in JNDs there", "at", "JND at rms force", "Segments"];
+    const heads = ["Error (rms)", "in JNDs", "Worst", "in JNDs there", "at", "JND of its rms force", "Segments"];
     this.table = element(
       "table",
       { class: "figures" },
-      element("caption", {}, "Law against averaged cycle, without what cycles differ by"),
+      element(
+        "caption",
+        {},
+        "Law against averaged cycle, without what cycles differ by (the tab Fits, and its JND: over every row in contact)",
+      ),
       element(
         "tbody",
         {},

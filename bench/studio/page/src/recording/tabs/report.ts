@@ -33,7 +33,10 @@ export const reportTab: RecordingTab = {
         element("h2", {}, "Write a report"),
         form,
         element("h2", {}, "About the recording"),
-        factsOf(recording.about),
+        factsOf(
+          recording.about,
+          recording.workspace.recordings.find((it) => it.id === recording.id),
+        ),
       ),
     );
     reportForm(context, recording.name).then(

@@ -2,7 +2,9 @@ import type { Workspace, WorkspaceFile, WorkspaceRecording, WorkspaceSession } f
 import type { StudyEntry } from "../../api/studies";
 import { stemOf, stemOfResult, stemsOf } from "../../results/of_recording/files";
 import { folderOf } from "../../results/names";
+import { isLeftOpen } from "../../recordings/left_open";
 import { plain } from "../../ui/numbers";
+import { whereItStands } from "../../sessions/standing";
 import { bytes, length } from "../../recordings/recording_list";
 
 export type Kind = "recordings" | "studies" | "sessions";
@@ -59,7 +61,8 @@ function recordingEntry(it: WorkspaceRecording, results: (it: WorkspaceRecording
     },
     get marks() {
       if (it.damaged) return ["unreadable"];
-      return it.partial ? ["not closed"] : results(it);
+      if (isLeftOpen(it)) return ["not closed"];
+      return it.partial ? ["being recorded"] : results(it);
     },
     modified: it.modified,
     seconds: it.seconds ?? 0,
@@ -68,12 +71,11 @@ function recordingEntry(it: WorkspaceRecording, results: (it: WorkspaceRecording
 }
 
 function sessionEntry(it: WorkspaceSession): Entry {
-  const state = it.finished ? "finished" : it.answered > 0 ? `${it.answered} trials done` : "not begun";
   return {
     id: it.id,
     name: it.name,
     address: `#/sessions/${it.id}`,
-    facts: it.error || [it.subject && `subject ${it.subject}`, state].filter(Boolean).join(" · "),
+    facts: [it.subject && `subject ${it.subject}`, whereItStands(it)].filter(Boolean).join(" · "),
     marks: it.error ? ["unreadable"] : [],
     modified: "",
     seconds: it.answered,

@@ -12,6 +12,7 @@ import type { WorkspaceStore } from "./workspace_store";
 
 const rowHeight = 44;
 const setting = "kerf list";
+const ages_ms = 15_000; // of a minute, which ages are told in
 
 interface Choice {
   kind: Kind;
@@ -67,6 +68,7 @@ export class SideList {
       this.count,
     );
     store.onChange((workspace) => this.take(workspace));
+    setInterval(() => document.hidden || this.age(), ages_ms);
   }
 
   focusSearch(): void {
@@ -149,6 +151,14 @@ export class SideList {
         element("span", { class: "list_facts" }, it.facts),
       ),
     );
+  }
+
+  /** Ages go on in the rows that are there, which keep their focus. */
+  private age(): void {
+    for (const [{ facts }, row] of this.list.rows()) {
+      const told = row.querySelector(".list_facts");
+      if (told && told.textContent !== facts) told.textContent = facts;
+    }
   }
 
   private markRows(): void {

@@ -67,9 +67,9 @@ export class Thumbnails {
   private async fetch(entry: Entry): Promise<Thumbnail | null> {
     if (entry.marks.includes("unreadable")) return null;
     try {
-      return await this.api.get<Thumbnail>("/api/recording/thumbnail", { id: entry.id });
+      return await this.api.get<Thumbnail | null>("/api/recording/thumbnail", { id: entry.id });
     } catch {
-      return null; // a recording that cannot be read says so when it is opened
+      return null; // the bar says that the studio does not answer
     }
   }
 }

@@ -66,7 +66,7 @@ export function groundOf(
 }
 
 /** Lines from below left to above right, of one grid for all boxes. */
-function hatch({ x, y, width, height }: Box, step: number): string {
+export function hatch({ x, y, width, height }: Box, step: number): string {
   let path = "";
   for (let sum = Math.ceil((x + y) / step) * step; sum < x + y + width + height; sum += step) {
     const from = Math.max(x, sum - y - height);

@@ -12,6 +12,7 @@ import { looks } from "../palette";
 import { cellShapes } from "./cells";
 import { axesOf, type Frame } from "./frame";
 import { px, type Shape } from "./shapes";
+import { marksOf } from "./stretch_marks";
 import type { Style } from "./style";
 
 /** A figure in its frame, from below to above; ground and curves are cut off at the frame. */
@@ -28,9 +29,11 @@ export function draw(figure: Figure, frame: Frame, style: Style, timeAxis = true
   const levels = levelsOf(figure, frame, style);
   const uprights = figure.vertical.flatMap((it) => uprightOf(it, frame, style));
   const markers = [...levels, ...uprights];
+  const marks = marksOf(figure.marks ?? [], frame, style);
   return {
     ground: [
       ...bandsOf(figure, frame, style),
+      ...marks.under,
       ...cellShapes(figure.cells, frame, style),
       ...(figure.areas ?? []).filter((it) => !it.extremes).map((it) => areaShape(it, frame, style)),
       ...markers.filter((it) => it.kind === "path"),
@@ -43,7 +46,8 @@ export function draw(figure: Figure, frame: Frame, style: Style, timeAxis = true
         .filter((it) => it.marked)
         .flatMap((it) => shapesAlong(it.colour, it.x, it.high, frame, style)),
       ...figure.curves.filter((it) => it.marked).flatMap((it) => shapesAlong(it.colour, it.x, it.y, frame, style)),
-      ...figure.curves.filter((it) => !isLine(it) && it.of.length === 0).flatMap((it) => marksOf(it, frame, style)),
+      ...figure.curves.filter((it) => !isLine(it) && it.of.length === 0).flatMap((it) => pointsOf(it, frame, style)),
+      ...marks.over,
     ],
     over: [...markers.filter((it) => it.kind === "text"), ...figure.labels.flatMap((it) => labelOf(it, frame, style))],
   };
@@ -205,7 +209,7 @@ function markedAs(curve: FigureCurve, d: string, style: Style): Shape {
 
 const manyMarks = 400; // from here on they are one path: nobody points at one
 
-function marksOf(curve: FigureCurve, frame: Frame, style: Style): Shape[] {
+function pointsOf(curve: FigureCurve, frame: Frame, style: Style): Shape[] {
   const places: [number, number][] = [];
   curve.x.forEach((it, i) => {
     const value = curve.y[i];

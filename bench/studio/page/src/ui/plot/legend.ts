@@ -1,21 +1,23 @@
 import { drawn, element } from "../dom";
-import type { Colour, Figure, FigureArea, FigureBand, FigureCurve } from "../figure_description";
+import type { Colour, Figure, FigureArea, FigureBand, FigureCurve, FigureMark } from "../figure_description";
 import { markPath } from "../marks";
 import { groundOf } from "./cells";
 import { bandShape, dashOf, isLine, markShape } from "./draw";
 import { nodeOf, type Shape } from "./shapes";
+import { markNames, markSample } from "./stretch_marks";
 import type { Style } from "./style";
 
 /** A sample of what is drawn, so wide and high, from its upper left corner; and what it is called. */
 export interface Entry {
   label: string;
+  isMark?: boolean; // of a stretch, which all figures of a sheet share
   sample: (x: number, y: number, width: number, height: number, style: Style) => Shape[];
 }
 
 const finite = (value: number | null | undefined): boolean => Number.isFinite(value);
 
 /** What of a figure has a name; each once. */
-export function entriesOf({ cells, areas = [], bands = [], curves, ordered }: Figure): Entry[] {
+export function entriesOf({ cells, areas = [], bands = [], marks = [], curves, ordered }: Figure): Entry[] {
   const entries: Entry[] = cells.kinds.map((kind) => ({
     label: kind.label,
     sample: (x, y, width, height, style) => groundOf([{ x, y, width, height }], kind, style),
@@ -28,6 +30,14 @@ export function entriesOf({ cells, areas = [], bands = [], curves, ordered }: Fi
   }
   if (ordered) entries.push({ label: ordered, sample: sequenceSample });
   for (const band of bands) if (band.label) entries.push({ label: band.label, sample: bandSample(band) });
+  for (const [kind, label] of Object.entries(markNames) as [FigureMark["kind"], string][]) {
+    if (!marks.some((it) => it.kind === kind)) continue;
+    entries.push({
+      label,
+      isMark: true,
+      sample: (x, y, width, height, style) => markSample(kind, { x, y, width, height }, style),
+    });
+  }
   return entries.filter((it, i) => entries.findIndex((other) => other.label === it.label) === i);
 }
 

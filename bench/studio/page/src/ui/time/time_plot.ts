@@ -9,6 +9,7 @@ import { screenStyle } from "../plot/style";
 import { calmLimits } from "./time_limits";
 import { columnAt, columnsWithin, widen, type Mapping, type TimeLine } from "./time_line";
 import { drawCycleMarks } from "./cycle_marks";
+import { figureMarks } from "./figure_marks";
 import { drawEvents, drawGround, noMarks, type TimeMarks } from "./time_marks";
 import { TimeRaster } from "./time_raster";
 import type { TimeRange } from "./time_range";
@@ -92,7 +93,7 @@ export class TimePlot {
       ? calmLimits(Math.log10(lower), Math.log10(Math.max(upper, lower)), before, true)
       : calmLimits(lower, upper, before, false);
     const limits = this.limits;
-    this.unit = unitFor(this.logarithmic ? 1 : Math.max(-limits[0], limits[1]), this.lines[0]?.unit ?? "");
+    this.unit = unitFor(this.reach.largest, this.reach.unit);
     const relative = [range.from, range.to].map((it) => ((it - this.shared.origin_s) / range.span).toFixed(6));
     const axes = [...relative, range.span, ...limits, this.logarithmic, this.shared.timeLabel].join(" ");
     if (axes !== this.axes) this.drawAxes(limits);
@@ -129,10 +130,15 @@ export class TimePlot {
     });
   }
 
-  /** What is shown, with all columns that are there: the smallest and the largest value of each. */
-  figure(): Figure {
+  /** The unit of its lines, and how far their axis reaches in it. */
+  get reach(): { unit: string; largest: number } {
+    const [lower, upper] = this.limits ?? [0, 1];
+    return { unit: this.lines[0]?.unit ?? "", largest: this.logarithmic ? 1 : Math.max(-lower, upper) };
+  }
+
+  /** What is shown, with all columns that are there: the smallest and the largest value of each, in a unit. */
+  figure({ factor, text }: { factor: number; text: string }): Figure {
     const { range, origin_s, timeLabel } = this.shared;
-    const { factor, text } = this.axisUnit;
     const stretch = (line: TimeLine): { first: number; end: number } => {
       const [first, end] = columnsWithin(line, range.from, range.to);
       return { first, end };
@@ -154,6 +160,7 @@ export class TimePlot {
         high: scaled(line.largest),
         colour: looks[line.look % looks.length]!,
         extremes: true,
+        each: Number(line.step_s.toPrecision(9)),
         marked: several,
       };
     });
@@ -167,6 +174,7 @@ export class TimePlot {
       x_range: [range.from - origin_s, range.to - origin_s],
       y_range: [lower, upper],
       log_y: this.logarithmic,
+      marks: figureMarks(this.shared.marks, range, origin_s, this.reach.unit),
       notes: [...new Set(this.lines.map((it) => columnsInWords(it)))].filter(Boolean),
     });
   }

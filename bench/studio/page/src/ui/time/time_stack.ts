@@ -1,7 +1,7 @@
 import "./time_plot.css";
 
 import { button, element } from "../dom";
-import { plain, withUnit } from "../numbers";
+import { plain, unitFor, withUnit } from "../numbers";
 import { onColours } from "../palette";
 import { gestures, pictureKey } from "../plot/gestures";
 import { enlargeButton } from "../plot/enlarge";
@@ -135,9 +135,12 @@ export class TimeStack {
     });
   }
 
-  /** What is shown, to be handed out. */
+  /** What is shown, to be handed out: what has one unit has it in all of a file, with one prefix. */
   sheet(): Sheet {
-    return { name: this.options.file?.() ?? this.options.name, figures: this.plots.map((it) => it.figure()) };
+    const largest = new Map<string, number>();
+    for (const { reach } of this.plots) largest.set(reach.unit, Math.max(largest.get(reach.unit) ?? 0, reach.largest));
+    const figures = this.plots.map((it) => it.figure(unitFor(largest.get(it.reach.unit) ?? 1, it.reach.unit)));
+    return { name: this.options.file?.() ?? this.options.name, figures };
   }
 
   private point(): void {

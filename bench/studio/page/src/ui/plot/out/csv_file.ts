@@ -40,28 +40,41 @@ function namesOf({ x_ticks }: Figure, x: Numbers): Numbers | string[] {
 
 /** The numbers of figures: x once for all that share it, then what is drawn over it; maps as one row a cell. */
 export function figureColumns(figures: readonly Figure[]): CsvColumn[] {
-  const groups: { head: string; x: Numbers; cells: CsvColumn["cells"]; columns: CsvColumn[] }[] = [];
-  const add = (figure: Figure, x: Numbers, columns: CsvColumn[]): void => {
-    const known = groups.find((it) => it.head === figure.x_label && same(it.x, x));
+  const groups: {
+    head: string;
+    x: Numbers;
+    each: number | undefined;
+    cells: CsvColumn["cells"];
+    columns: CsvColumn[];
+  }[] = [];
+  const add = (figure: Figure, x: Numbers, columns: CsvColumn[], each?: number): void => {
+    const known = groups.find((it) => it.head === figure.x_label && it.each === each && same(it.x, x));
     if (known) known.columns.push(...columns);
-    else groups.push({ head: figure.x_label, x, cells: namesOf(figure, x), columns });
+    else groups.push({ head: figure.x_label, x, each, cells: namesOf(figure, x), columns });
   };
   figures.forEach((figure) => {
-    for (const { x, low, high, label, name = label, extremes } of figure.areas ?? []) {
+    for (const { x, low, high, label, name = label, extremes, each } of figure.areas ?? []) {
       const [least, most] = extremes ? ["smallest", "largest"] : ["lower", "upper"];
-      if (extremes && same(low, high)) add(figure, x, [{ head: headOf(figure.y_label, name), cells: low }]);
-      else
-        add(figure, x, [
+      if (extremes && same(low, high)) add(figure, x, [{ head: headOf(figure.y_label, name), cells: low }], each);
+      else {
+        const columns = [
           { head: headOf(figure.y_label, `${name} ${least}`.trim()), cells: low },
           { head: headOf(figure.y_label, `${name} ${most}`.trim()), cells: high },
-        ]);
+        ];
+        add(figure, x, columns, each);
+      }
     }
     for (const { x, y, label, name = label } of figure.curves) {
       if (x.length > 0) add(figure, x, [{ head: headOf(figure.y_label, name), cells: y }]);
     }
   });
   return [
-    ...groups.flatMap(({ head, cells, columns }) => [{ head, cells }, ...columns]),
+    ...groups.flatMap(({ head, x, each, cells, columns }) => [
+      { head, cells },
+      // In each row, since a table has no other place for it that every program reads.
+      ...(each === undefined ? [] : [{ head: headOf(head, "covered by a row"), cells: x.map(() => each) }]),
+      ...columns,
+    ]),
     ...figures.flatMap(cellColumns),
   ];
 }

@@ -70,7 +70,7 @@ export function printed(sheet: Sheet, column: Column): Printed {
 
 /** Marks that a page draws itself, since they can be opened. */
 function spotsOf(figure: Figure, frame: Frame): Shape[] {
-  const plain = { ...figure, areas: [], bands: [], vertical: [], horizontal: [], labels: [] };
+  const plain = { ...figure, areas: [], bands: [], marks: [], vertical: [], horizontal: [], labels: [] };
   const curves = figure.curves.filter((it) => it.of.length > 0 && it.mark !== "line").map((it) => ({ ...it, of: [] }));
   return curves.length === 0
     ? []
@@ -78,7 +78,8 @@ function spotsOf(figure: Figure, frame: Frame): Shape[] {
 }
 
 function uniqueEntries(figures: readonly Figure[]): Entry[] {
-  const all = figures.flatMap(entriesOf);
+  const named = figures.flatMap(entriesOf);
+  const all = [...named.filter((it) => !it.isMark), ...named.filter((it) => it.isMark)];
   return all.filter((it, i) => all.findIndex((other) => other.label === it.label) === i);
 }
 
