@@ -149,9 +149,10 @@ std::vector<std::string> comparison_lines(const RunComparison& result) {
     for (std::size_t kind = 0; kind < force_event_names.size(); ++kind) {
       const EventMatch& match = result.events[i][kind];
       if (match.recorded + match.rendered == 0) continue;
-      lines.push_back(fmt::format("{:8} {}: {} expected, {} got, {} the same, late by {:+.3g} ms on average",
-                                  "", force_event_names[kind], match.recorded, match.rendered,
-                                  match.late_s.size(), match.late_s.empty() ? 0.0 : 1e3 * match.mean_s()));
+      lines.push_back(fmt::format("{:8} {}: {} expected, {} got, {} the same", "", force_event_names[kind],
+                                  match.recorded, match.rendered, match.late_s.size()));
+      if (!match.late_s.empty())
+        lines.back() += fmt::format(", late by {:+.3g} ms on average", 1e3 * match.mean_s());
     }
   }
   for (const std::string& message : result.comparison.messages) lines.push_back(message);

@@ -11,6 +11,8 @@
 
 #include <fmt/format.h>
 
+#include <kerf/models/law_facts.h>
+
 #include "files/file_names.h"
 #include "fits/fit_series.h"
 #include "fits/law_options.h"
@@ -166,7 +168,15 @@ void check(const AskedFit& asked, std::size_t recordings) {
   (void)parse_segments(asked.segments);
   const auto models = models_of(asked.options);
   for (const std::string& model : models) fitting::check_model(model);
+  if (!asked.breakpoints.empty() && !asked.fits_segments())
+    refuse_asked("--breakpoints says nothing to the laws that are fitted; it is for piecewise");
   check_law_options(models, law_options_of(asked));
+}
+
+bool AskedFit::fits_segments() const {
+  return std::ranges::any_of(models_of(options), [](const std::string& model) {
+    return models::law_facts(model).search == models::Search::segments;
+  });
 }
 
 FitSource source_of(const AskedFit& asked, const schema::Recording& recording, const std::string& name,

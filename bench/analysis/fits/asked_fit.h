@@ -53,6 +53,9 @@ struct AskedFit {
   std::string loss = "squares";
   FitRecordingOptions options;  ///< what of the above stands as it is
 
+  /// Whether one of the laws has segments to be found. @throws std::invalid_argument for what is no law.
+  [[nodiscard]] bool fits_segments() const;
+
   // What may be asked for.
   struct Range {
     double lower;

@@ -61,8 +61,11 @@ models::Options options_of_law(std::string_view model, const std::vector<std::st
 }
 
 void check_law_options(const std::vector<std::string>& models, const std::vector<std::string>& given) {
+  std::set<std::string> names;
   for (const std::string& text : given) {
     const std::string name = assignment_of(text).name;
+    if (!names.insert(name).second)
+      throw std::invalid_argument(fmt::format("the option '{}' is given twice; leave one out", name));
     std::set<std::string> all;
     bool known = false;
     for (const std::string& model : models) {

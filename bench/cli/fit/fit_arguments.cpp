@@ -107,6 +107,7 @@ void add_fit_options(Verb& verb, FitArguments& arguments) {
   add_data_options(verb, arguments);
   add_estimation_options(verb, arguments);
   verb.add_flag("--force", arguments.force, "Replace an existing fit");
+  arguments.refuse_idle = verb.refuses_idle();
 }
 
 void check(const FitArguments& arguments) {
@@ -117,6 +118,13 @@ void check(const FitArguments& arguments) {
   if (!batch && count == 0) refuse("name a recording to fit, or a folder of them with --batch");
   if (!batch && arguments.jobs > 0) refuse("--jobs needs --batch");
   check(arguments, count);
+  if (arguments.no_folds) arguments.refuse_idle({"--folds"}, "a fit without folds", "leave out --no-folds");
+  if (!arguments.breakpoints.empty())
+    arguments.refuse_idle({"--segments", "--points-per-segment"}, "breakpoints that are given",
+                          "leave out --breakpoints");
+  if (!arguments.fits_segments())
+    arguments.refuse_idle({"--segments", "--points-per-segment"}, "the laws that are fitted",
+                          "it is for piecewise");
 }
 
 }  // namespace kerf::bench

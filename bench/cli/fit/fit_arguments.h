@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fits/asked_fit.h"
+#include "program/verb.h"
 #include "program/verbs.h"
 
 namespace kerf::bench {
@@ -16,11 +17,12 @@ struct FitArguments : AskedFit {
   std::size_t jobs = 0;  ///< 0: one a processor
   std::string output;
   bool force = false;
+  RefuseIdle refuse_idle;
 };
 
 void add_fit_options(Verb& verb, FitArguments& arguments);
 
-/// @throws std::invalid_argument for options that exclude each other, or that no law has.
+/// @throws std::invalid_argument for options that exclude each other, say nothing, or that no law has.
 void check(const FitArguments& arguments);
 
 }  // namespace kerf::bench

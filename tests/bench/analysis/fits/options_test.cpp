@@ -99,6 +99,26 @@ TEST_F(FitOptions, ChooseTheSegments) {
   EXPECT_EQ(fit({file, "--segments", "many"}).exit_status, 2);
 }
 
+TEST_F(FitOptions, AreRefusedWhereTheySayNothing) {
+  const std::string file = punch("a.h5");
+  const auto refusal = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), file);
+    const auto run = fit(words);
+    EXPECT_EQ(run.exit_status, 2) << run.errors;
+    return run.errors;
+  };
+  EXPECT_THAT(refusal({"--models", "kelvin", "--no-folds", "--folds", "3"}),
+              HasSubstr("--folds says nothing to a fit without folds; leave out --no-folds"));
+  EXPECT_THAT(refusal({"--models", "kelvin", "--segments", "3"}),
+              HasSubstr("--segments says nothing to the laws that are fitted; it is for piecewise"));
+  EXPECT_THAT(refusal({"--models", "kelvin", "--breakpoints", "2"}),
+              HasSubstr("--breakpoints says nothing to the laws that are fitted; it is for piecewise"));
+  EXPECT_THAT(refusal({"--models", "piecewise", "--breakpoints", "2", "--segments", "3"}),
+              HasSubstr("--segments says nothing to breakpoints that are given"));
+  EXPECT_THAT(refusal({"--models", "exponential", "--thickness", "0.01", "--option", "thickness=0.02"}),
+              HasSubstr("the option 'thickness' is given twice; leave one out"));
+}
+
 TEST_F(FitOptions, ReachTheLawsThatHaveThem) {
   const std::string file = punch("a.h5");
   const json all = result({file, "--models", "maxwell,exponential", "--no-folds", "--arms", "1",

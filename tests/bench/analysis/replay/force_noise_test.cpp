@@ -26,10 +26,10 @@ double cut_at(std::size_t row, bool ruptures) {
 /// A sensor with a new value every so many rows.
 std::vector<double> sensed(double noise, std::size_t held, bool ruptures = false) {
   std::mt19937_64 random(7);
-  std::normal_distribution<double> rough(0.0, noise);
+  std::normal_distribution<double> rough;
   std::vector<double> force;
   for (std::size_t row = 0; row < rows; row += held) {
-    const double value = cut_at(row, ruptures) + rough(random);
+    const double value = cut_at(row, ruptures) + noise * rough(random);
     for (std::size_t i = 0; i < held; ++i) force.push_back(value);
   }
   return force;
