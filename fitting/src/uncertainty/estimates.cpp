@@ -105,7 +105,7 @@ struct KnownCoordinates {
   std::vector<Known> known;
 
   /// That of a parameter in a recording; none where it was not searched.
-  [[nodiscard]] const Known* find(std::size_t parameter, std::size_t run) const {
+  [[nodiscard]] Known* find(std::size_t parameter, std::size_t run) {
     for (std::size_t k = 0; k < of.size(); ++k) {
       if (of[k].parameter == parameter && (of[k].run == Estimate::shared || of[k].run == run))
         return &known[k];
@@ -348,7 +348,7 @@ class Estimation {
     unknowns_.push_back({{name}, std::move(warning)});
   }
 
-  [[nodiscard]] Limits limits_of_zero(const Problem& with, const Problem::Coordinate& coordinate) const {
+  [[nodiscard]] Limits limits_of_zero(const Problem& with, const Problem::Coordinate& coordinate) {
     const LawObjective objective(with, samples_, weights_, solution_.values, loss_);
     const Eigen::VectorXd at = coordinates_of(with, solution_.values);
     const auto all = with.all();
@@ -359,7 +359,26 @@ class Estimation {
     if (!objective.evaluate(at, sums)) return {};
     const Uncertainty uncertainty =
         uncertainty_of(linearise(objective, with, solution_, samples_, weights_, loss_), options_.confidence);
+    forget_what_hangs_on(coordinate, all, uncertainty);
     return limits_above_zero(with, objective, at, held - all.begin(), sums, uncertainty);
+  }
+
+  /// What the data tell only as long as a parameter is zero, such as the exponent of an amplitude that is
+  /// none, they do not tell. @param free how well all are known where that one is searched
+  void forget_what_hangs_on(const Problem::Coordinate& zero, const std::vector<Problem::Coordinate>& all,
+                            const Uncertainty& free) {
+    constexpr double much = 10.0;  // more, in standard errors, than two that merely share what they explain
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      Known* const known = known_.find(all[k].parameter, all[k].run == Estimate::shared ? 0 : all[k].run);
+      if (known == nullptr || !std::isfinite(known->std_error) || all[k] == zero) continue;
+      const auto diagonal = static_cast<Eigen::Index>(k);
+      if (free.determined[k] && std::sqrt(free.covariance(diagonal, diagonal)) <= much * known->std_error)
+        continue;
+      *known = {.std_error = infinite, .limits = {}};
+      const std::string name = name_of(all[k]);
+      std::string warning = "'" + name + "' is told only as long as '" + name_of(zero) + "' is zero";
+      unknowns_.push_back({{name}, std::move(warning)});
+    }
   }
 
   /// An arm of which little is known, and that is as well left away, is named as a whole.
