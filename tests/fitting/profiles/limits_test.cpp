@@ -127,6 +127,17 @@ TEST(Limits, OfWhatIsWellKnownAreWaldsAndTheProfilesToo) {
   }
 }
 
+// At a bound of the amplitude an exponent makes what is left of noise its own.
+TEST(Limits, OfAnExponentWhoseAmplitudeIsNoneAreOpen) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const test::Strokes noise(20'000, 0.02, models::Law::make("precontact", std::vector{1e-9, 1e-6}), seed);
+    const FitResult result = fit("exponential", noise.series(), {.folds = 0});
+    const Estimate& exponent = estimate_of(result, "exponent");
+    EXPECT_TRUE(std::isinf(exponent.std_error) || exponent.std_error > 0.5 * exponent.value)
+        << exponent.value << " +- " << exponent.std_error;
+  }
+}
+
 TEST(Limits, OfWhatTheDataDoNotSetAreOpen) {
   test::Path slow;
   for (int i = 0; i < 4000; ++i) slow.push_back({.penetration = 2.5e-5 * i, .velocity = 0.025});
