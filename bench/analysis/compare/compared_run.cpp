@@ -148,6 +148,7 @@ ComparedRun from_table(const fs::path& file) {
   for (const RunColumn& one : columns) indices.push_back(one.index);
   std::atomic<std::size_t> done{0};
   TextTable table = parse_table(text.text(), layout, indices, done);
+  text.require_whole();
   if (!table.bad_lines.empty())
     throw std::invalid_argument(fmt::format("{}:{}: not a row of {} numbers; of a run every row counts",
                                             text.name(), table.bad_lines.front(), layout.columns.size()));

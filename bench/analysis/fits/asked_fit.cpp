@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-#include <kerf/models/law_facts.h>
+#include <kerf/models/law.h>
 
 #include "files/file_names.h"
 #include "fits/fit_series.h"

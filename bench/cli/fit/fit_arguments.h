@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "fits/asked_fit.h"
-#include "program/verb.h"
 #include "program/verbs.h"
 
 namespace kerf::bench {

@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdint>
+#include <stdexcept>
 #include <system_error>
 
 #include <sys/mman.h>
@@ -88,7 +89,7 @@ WatchedMapping* watched(const void* begin, std::size_t bytes) {
 
 }  // namespace
 
-MappedFile::MappedFile(const std::filesystem::path& file, std::uintmax_t at_most) {
+MappedFile::MappedFile(const std::filesystem::path& file, std::uintmax_t at_most) : file_(file) {
   const NamedFile named(file);
   if (named.is_pipe()) {
     piped_ = named.read_all(at_most);
@@ -104,8 +105,10 @@ MappedFile::MappedFile(const std::filesystem::path& file, std::uintmax_t at_most
   watched_ = watched(begin_, size_);
 }
 
-bool MappedFile::is_damaged() const noexcept {
-  return watched_ != nullptr && watched_->is_damaged.load(std::memory_order_acquire);
+void MappedFile::require_whole() const {
+  if (watched_ != nullptr && watched_->is_damaged.load(std::memory_order_acquire))
+    throw std::invalid_argument(file_.string() +
+                                ": it became shorter while it was read; try again when it has been written");
 }
 
 void MappedFile::let_go_of(std::string_view part) const noexcept {

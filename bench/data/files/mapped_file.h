@@ -28,13 +28,15 @@ class MappedFile {
     return begin_ == nullptr ? std::string_view(piped_)
                              : std::string_view(static_cast<const char*>(begin_), size_);
   }
-  /// Whether a part of it that was looked at could not be read any more.
-  [[nodiscard]] bool is_damaged() const noexcept;
+  /// For whoever has read what they wanted: it was what the file holds.
+  /// @throws std::invalid_argument with its name if a part of it could not be read any more.
+  void require_whole() const;
   /// Lets go of the memory of a part that has been looked at, of text(); it is read again where it is asked
   /// for.
   void let_go_of(std::string_view part) const noexcept;
 
  private:
+  std::filesystem::path file_;
   void* begin_ = nullptr;
   std::size_t size_ = 0;
   WatchedMapping* watched_ = nullptr;

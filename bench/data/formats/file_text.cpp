@@ -70,12 +70,7 @@ FileText::FileText(const std::filesystem::path& file, const FileTextOptions& opt
   } else {
     refuse_what_cannot_be_read(text(), name_);
   }
-}
-
-void FileText::require_whole() const {
-  if (mapped_.is_damaged())
-    throw std::invalid_argument(
-        fmt::format("{}: it became shorter while it was read; try again when it has been written", name_));
+  mapped_.require_whole();
 }
 
 }  // namespace kerf::bench

@@ -29,8 +29,8 @@ class FileText {
   FileText(const std::filesystem::path& file, const FileTextOptions& options);
 
   [[nodiscard]] std::string_view text() const noexcept { return is_made_ ? made_ : mapped_.text(); }
-  /// @throws std::invalid_argument if the file could not be read to its end any more, after it was opened.
-  void require_whole() const;
+  /// As MappedFile has it.
+  void require_whole() const { mapped_.require_whole(); }
   /// The file itself, as it is hashed.
   [[nodiscard]] std::string_view bytes() const noexcept { return mapped_.text(); }
   /// What stands for the text in messages: "drawer.xlsx, sheet 'Run 2'". A line of it is a row of the sheet.

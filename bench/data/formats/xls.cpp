@@ -67,6 +67,7 @@ class XlsBook {
     }
     if (sheets_.empty()) refuse("a workbook without a sheet");
   }
+
   Sheet sheet(const std::string& asked) {
     return taken_sheet(sheets_, asked, limits_.name,
                        [&](std::size_t place, CellCounts& counts) { return read(place, counts); });

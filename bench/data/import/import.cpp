@@ -207,6 +207,8 @@ struct ReadFile {
     require_stamps_for_time(layout, columns, file.name());
     require_places_that_fit(spatial, options.places);
     require_memory_for_rows(path, file.text(), columns.size(), spatial.has_value());
+    if (const MappedColumn* time = find_channel(columns, "time"))
+      count_from_first(layout, time->index, file.text());
     std::vector<std::size_t> indices;
     for (const MappedColumn& column : columns) indices.push_back(column.index);
     const auto begin = std::chrono::steady_clock::now();

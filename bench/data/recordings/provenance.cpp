@@ -183,6 +183,7 @@ std::string sha256_of(const std::filesystem::path& file) {
     digest.bytes(part.data(), part.size());
     mapped.let_go_of(part);
   }
+  mapped.require_whole();
   return digest.hexadecimal();
 }
 

@@ -66,7 +66,10 @@ fs::path partial_shard(fs::path place) {
 
 ShardContent read_shard(const fs::path& file,
                         const std::function<void(const CellRecord&, std::uintmax_t at)>& take) {
-  return read_shard(MappedFile(file).text(), file, take);
+  const MappedFile mapped(file);
+  ShardContent content = read_shard(mapped.text(), file, take);
+  mapped.require_whole();
+  return content;
 }
 
 ShardContent read_shard(std::string_view bytes, const fs::path& file,

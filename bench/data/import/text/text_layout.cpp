@@ -23,18 +23,12 @@ constexpr std::size_t sampled_data_lines = 50;
 
 bool is_blank(char c) noexcept { return c == ' ' || c == '\t' || c == '\r'; }
 
-/// Which columns hold time stamps or long numbers, by the first line of the data.
-void find_origins(TextLayout& layout, std::string_view line) {
-  constexpr std::int64_t least = 1'000'000'000;
+/// Which columns hold time stamps, by the first line of the data.
+void find_stamps(TextLayout& layout, std::string_view line) {
   const auto fields = split_line(line, layout.separator);
   for (std::size_t i = 0; i < std::min(fields.size(), layout.columns.size()); ++i) {
     TimeStamp stamp;
-    if (!is_time_stamp(fields[i], stamp)) {
-      std::int64_t whole = 0;
-      const auto read = std::from_chars(fields[i].data(), fields[i].data() + fields[i].size(), whole);
-      if (read.ec == std::errc{} && whole >= least) layout.columns[i].origin = whole;
-      continue;
-    }
+    if (!is_time_stamp(fields[i], stamp)) continue;
     layout.columns[i].stamps = stamp;
     layout.columns[i].unit = "s";
     layout.columns[i].unknown_unit.clear();
@@ -103,6 +97,17 @@ std::vector<std::string_view> split_line(std::string_view line, char separator) 
   return fields;
 }
 
+void count_from_first(TextLayout& layout, std::size_t column, std::string_view text) {
+  constexpr std::int64_t least = 1'000'000'000;
+  std::string_view rest = text.substr(layout.data_begin);
+  const auto fields = split_line(take_line(rest), layout.separator);
+  if (column >= fields.size() || layout.columns[column].stamps) return;
+  const std::string_view field = fields[column];
+  std::int64_t whole = 0;
+  const auto read = std::from_chars(field.data(), field.data() + field.size(), whole);
+  if (read.ec == std::errc{} && whole >= least) layout.columns[column].origin = whole;
+}
+
 bool names_all(const std::vector<std::string_view>& fields, std::size_t columns) {
   return fields.size() == columns && std::ranges::none_of(fields, [](std::string_view field) {
            return trimmed(field).empty() || is_decimal(field, '.') || is_decimal(field, ',');
@@ -156,7 +161,7 @@ TextLayout find_layout(std::string_view text, const std::string& name) {
   const std::vector<std::string> preamble = as_utf8({lines.data(), layout.preamble_lines});
   const std::vector<std::string_view> said(preamble.begin(), preamble.end());
   const HeaderLine header = read_header(layout, said, width);
-  find_origins(layout, *first);
+  find_stamps(layout, *first);
   for (auto line = first; line != lines.end(); ++line) {
     const auto number = static_cast<std::size_t>(line - lines.begin()) + 1;
     if (reading.reads(*line))

@@ -23,9 +23,8 @@ struct TextColumn {
   std::string unknown_unit;
   /// Of a column of time stamps the first one; its unit is s whatever its name says.
   std::optional<TimeStamp> stamps;
-  /// Of a column of numbers of ten digits and more, as moments since 1970 are, the whole part of its first
-  /// one: what parse_table() reads are the differences from it, which a double holds where it rounds the
-  /// number.
+  /// From what parse_table() counts the numbers of the column: a double holds the differences of long ones,
+  /// as moments since 1970 are, where it rounds the numbers.
   std::int64_t origin = 0;
 };
 
@@ -45,6 +44,9 @@ struct TextLayout {
 /// @throws std::invalid_argument for an empty file, a binary one, one without a line of numbers, or one whose
 ///         lines hold more numbers than its header has names.
 [[nodiscard]] TextLayout find_layout(std::string_view text, const std::string& name);
+
+/// Has the numbers of a column counted from the whole part of its first one, if that has ten digits or more.
+void count_from_first(TextLayout& layout, std::size_t column, std::string_view text);
 
 /// Splits a line into its fields: blanks around them and quotes taken off.
 [[nodiscard]] std::vector<std::string_view> split_line(std::string_view line, char separator);

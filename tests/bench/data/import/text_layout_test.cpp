@@ -1,14 +1,20 @@
 #include "import/text/text_layout.h"
 
+#include <array>
+#include <atomic>
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "import/text/text_table.h"
+
 namespace kerf::bench {
 namespace {
 
+using testing::DoubleNear;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -334,6 +340,18 @@ TEST(SplitLine, TakesOffBlanksAndQuotes) {
   EXPECT_THAT(split_line(R"( a , "b,c" ,,d)", ','), ElementsAre("a", "b,c", "", "d"));
   EXPECT_THAT(split_line("  a \t b  ", ' '), ElementsAre("a", "b"));
   EXPECT_THAT(split_line("a\t\tb", '\t'), ElementsAre("a", "", "b"));
+}
+
+TEST(TextTable, HasLongNumbersThemselvesUnlessTheyAreCountedFromTheFirst) {
+  const std::string text = "raw,t\n2000000010,1700000000.123456789\n2000000030,1700000000.123556789\n";
+  TextLayout layout = find_layout(text, "raw.csv");
+  constexpr std::array<std::size_t, 2> both{0, 1};
+  std::atomic<std::size_t> done{0};
+  EXPECT_THAT(parse_table(text, layout, both, done).columns[0], ElementsAre(2000000010.0, 2000000030.0));
+  count_from_first(layout, 1, text);
+  const TextTable table = parse_table(text, layout, both, done);
+  EXPECT_THAT(table.columns[0], ElementsAre(2000000010.0, 2000000030.0));
+  EXPECT_THAT(table.columns[1], ElementsAre(DoubleNear(0.123456789, 1e-15), DoubleNear(0.123556789, 1e-15)));
 }
 
 }  // namespace

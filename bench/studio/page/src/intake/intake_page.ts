@@ -60,7 +60,8 @@ export class IntakePage {
     this.hint = element(
       "p",
       { class: "quiet" },
-      "Drop files anywhere, or choose them: CSV, TSV and instrument text, xlsx and xls, MAT-files, LabVIEW's lvm and TDMS, packed by gzip too.",
+      "Drop files anywhere, or choose them: CSV, TSV and instrument text, xlsx and xls, MAT-files, LabVIEW's lvm and " +
+        "TDMS, packed by gzip too.",
     );
     root.append(
       element(

@@ -10,11 +10,9 @@ export function repairAddress(it: WorkspaceRecording): string {
   return `#/work/repair?recording=${encodeURIComponent(it.name)}`;
 }
 
-const stillOpen = ["recording"];
-
 /** What its file has for a status, in words: one that was never closed still says that it is being recorded. */
 export function statusInWords(status: string, entry: WorkspaceRecording | undefined): string {
   if (status === "complete") return "";
-  if (!stillOpen.includes(status)) return status;
-  return entry && !isLeftOpen(entry) ? "being recorded" : "ended without being closed";
+  if (!entry?.partial) return status;
+  return isLeftOpen(entry) ? "ended without being closed" : "being recorded";
 }
