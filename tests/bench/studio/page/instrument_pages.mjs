@@ -117,6 +117,7 @@ export const tests = {
     await page.getByRole("button", { name: "Spectrum" }).click();
     expect(page.url().includes("view=spectrum"), page.url());
     await page.getByLabel("Spectrum of").selectOption("position theta");
+    await until("the address says so", () => page.url().includes("spectrum=position"));
     await page.getByText(/Largest: .* Hz/).waitFor();
     await page.screenshot({ path: join(screenshots, "scope_spectrum.png") });
     await page.goBack();

@@ -32,7 +32,9 @@ export class FitPage {
   readonly root: HTMLElement;
   private readonly table: FitTable;
   private readonly detail = element("section", { class: "detail", "aria-label": "The law that is looked at" });
+  private readonly against = element("div");
   private readonly drawn = element("section", { class: "beside_laws", "aria-label": "Laws beside each other" });
+  private readonly left = element("section", { class: "beside_laws", "aria-label": "What laws leave of the data" });
   private readonly errors: Plot;
   private readonly latest: Latest;
   private comparison: Comparison | null = null;
@@ -57,35 +59,38 @@ export class FitPage {
     );
     this.errors = new Plot(`Errors of laws: ${of?.name ?? ""}`);
     const refused = fit.refused.map((it) => `${it.model}: ${it.why}`);
-    const compared = element(
+    const choice = element(
+      "p",
+      { class: "choice" },
+      element("strong", {}, fit.choice.model ? `Choice: ${fit.choice.model}. ` : "No choice. "),
+      fit.choice.why,
+    );
+    const about =
+      `${of?.name ?? ""}, axis ${of?.axis ?? ""}: ${fit.samples} samples. ` +
+      `JND ${plain(fit.jnd)} ${unit}; a straight line leaves ${plain(fit.line_rmse)} ${unit}. ` +
+      "Errors are over every row in contact, of whose force the JND is; those of the tab Law, and its JND, are of the " +
+      "averaged cycle, without what cycles differ by.";
+    const said = element(
       "div",
-      { class: "compared" },
-      element(
-        "p",
-        { class: "quiet" },
-        `${of?.name ?? ""}, axis ${of?.axis ?? ""}: ${fit.samples} samples. ` +
-          `JND ${plain(fit.jnd)} ${unit}; a straight line leaves ${plain(fit.line_rmse)} ${unit}. ` +
-          "Errors are over every row in contact, of whose force the JND is; those of the tab Law, and its JND, are of the " +
-          "averaged cycle, without what cycles differ by.",
-      ),
-      this.table.root,
-      element(
-        "p",
-        { class: "choice" },
-        element("strong", {}, fit.choice.model ? `Choice: ${fit.choice.model}. ` : "No choice. "),
-        fit.choice.why,
-      ),
+      { class: "fit_words" },
       blamed ? element("p", {}, element("strong", {}, "What is to blame: "), `${blamed}.`) : null,
       list("Warnings", fit.warnings, "warnings"),
       list(`${counted(refused.length, "law")} could not be fitted`, refused),
+      element("p", { class: "quiet" }, about),
       this.detail,
     );
     const errors = this.errors.figure("Errors, fitted and held out");
     this.root = element(
       "div",
       { class: "fit_page" },
-      compared,
-      element("div", { class: "drawn_laws" }, this.drawn, errors),
+      element(
+        "div",
+        { class: "fit_first" },
+        element("div", { class: "drawn_laws" }, this.drawn),
+        element("div", { class: "fit_line" }, choice, this.against),
+        this.table.root,
+      ),
+      element("div", { class: "fit_rest" }, said, element("div", { class: "left_by_laws" }, this.left, errors)),
     );
     const named = (model: string | null): LawFit | undefined => fit.fits.find((it) => it.model === model);
     const first = named(context.state.get(stateKeys.law)) ?? named(fit.choice.model) ?? fit.fits[0];
@@ -130,7 +135,9 @@ export class FitPage {
     );
     this.comparison?.end();
     this.comparison = new Comparison(this.recording, name);
-    this.drawn.replaceChildren(labelled("Over the recording", against), this.comparison.root);
+    this.against.replaceChildren(labelled("Over the recording", against));
+    this.drawn.replaceChildren(this.comparison.first);
+    this.left.replaceChildren(this.comparison.rest);
     void this.compare();
   }
 

@@ -126,7 +126,7 @@ export class FitTable {
     );
     this.root = element(
       "div",
-      {},
+      { class: "fits_table" },
       element("div", { class: "scrolled" }, table),
       tableMenu(table, `fits-${file.recordings[0]?.name ?? ""}`),
     );

@@ -34,7 +34,8 @@ function inDrawnUnits(laws: readonly ComparedLaw[]): ComparedLaw[] {
 
 /** One law or several over the same recording: by penetration, over time, and what they leave of it. */
 export class Comparison {
-  readonly root: HTMLElement;
+  readonly first: HTMLElement; // what is looked at while laws are ticked: forces
+  readonly rest: HTMLElement; // what laws leave of them, and where
   private readonly words = element("div", { class: "figures", role: "status" });
   private readonly plots: readonly Plot[];
 
@@ -43,12 +44,9 @@ export class Comparison {
     name: string,
   ) {
     this.plots = views.map(([title]) => new Plot(`${title}: ${name}`));
-    this.root = element(
-      "div",
-      { class: "residuals" },
-      this.words,
-      ...this.plots.map((it, k) => it.figure(views[k]![0])),
-    );
+    const figures = this.plots.map((it, k) => it.figure(views[k]![0]));
+    this.first = element("div", { class: "residuals" }, ...figures.slice(0, 2));
+    this.rest = element("div", { class: "residuals" }, this.words, ...figures.slice(2));
   }
 
   end(): void {
