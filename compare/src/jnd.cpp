@@ -1,12 +1,9 @@
 #include "kerf/compare/jnd.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numeric>
 
 namespace kerf::compare {
-
-double Jnd::at(double felt) const noexcept { return std::max(weber_fraction * std::abs(felt), threshold); }
 
 Jnd jnd_of(std::string_view force_unit, double axis_lever) noexcept {
   if (force_unit != "N·m") return force_jnd;

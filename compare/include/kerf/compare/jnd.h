@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <span>
 #include <string_view>
 
@@ -10,7 +12,9 @@ namespace kerf::compare {
 struct Jnd {
   double weber_fraction = 0.07;
   double threshold = 0.05;  ///< in the unit of what is felt
-  [[nodiscard]] double at(double felt) const noexcept;
+  [[nodiscard]] double at(double felt) const noexcept {
+    return std::max(weber_fraction * std::abs(felt), threshold);
+  }
 };
 
 /// Of a force [N]: [Pang1991] (7 %); order of magnitude at the fingertips (0.05 N).
