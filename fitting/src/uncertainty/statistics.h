@@ -17,6 +17,9 @@ namespace kerf::fitting {
 /// @param deviation in standard errors
 [[nodiscard]] double two_sided_p(double deviation, double degrees_of_freedom, std::size_t numbers = 1);
 
+/// The value in the middle, or the mean of the two there. @param values at least one, all finite
+[[nodiscard]] double median_of(std::vector<double> values);
+
 /// Standard deviation of normal noise by the median of its sizes, 1.4826 times that: a few that are
 /// no noise do not move it. 0 of none.
 [[nodiscard]] double robust_deviation(std::vector<double> sizes);
