@@ -24,18 +24,25 @@ struct RootMeanSquares {
   double seen = nothing, test = nothing;
 };
 RootMeanSquares rms_of(const std::vector<double>& residuals, const Samples& samples) {
-  struct Sum {
-    double squares = 0.0, count = 0.0;
-    [[nodiscard]] double rms() const { return count > 0.0 ? std::sqrt(squares / count) : nothing; }
-  };
-  Sum seen, test;
+  double seen = 0.0;
+  double test = 0.0;
+  std::size_t seen_rows = 0;
+  std::size_t test_rows = 0;
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     if (samples.counts[i] == 0) continue;
-    Sum& sum = samples.fold[i] == Samples::test ? test : seen;
-    sum.squares += residuals[i] * residuals[i];
-    sum.count += 1.0;
+    const double square = residuals[i] * residuals[i];
+    if (samples.fold[i] == Samples::test) {
+      test += square;
+      ++test_rows;
+    } else {
+      seen += square;
+      ++seen_rows;
+    }
   }
-  return {.seen = seen.rms(), .test = test.rms()};
+  const auto root = [](double squares, std::size_t rows) {
+    return rows > 0 ? std::sqrt(squares / static_cast<double>(rows)) : nothing;
+  };
+  return {.seen = root(seen, seen_rows), .test = root(test, test_rows)};
 }
 
 void tell_a_part(const FitOptions& options) {
@@ -44,22 +51,29 @@ void tell_a_part(const FitOptions& options) {
 
 void measure_errors(FitResult& result, const std::vector<double>& residuals, const Samples& samples,
                     const Jnd& jnd) {
-  double n = 0.0, sum = 0.0, sum_of_squares = 0.0, felt = 0.0, most = 0.0;
+  double sum = 0.0;
+  double sum_of_squares = 0.0;
+  double most = 0.0;
+  std::size_t rows = 0;
+  std::size_t felt = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (samples.fold[i] == Samples::test || samples.counts[i] == 0) continue;
-    n += 1.0;
-    sum += samples.force[i];
-    sum_of_squares += samples.force[i] * samples.force[i];
-    most = std::max(most, std::abs(residuals[i]));
-    felt += std::abs(residuals[i]) > jnd.at(samples.force[i]) ? 1.0 : 0.0;
+    const double force = samples.force[i];
+    const double error = std::abs(residuals[i]);
+    ++rows;
+    sum += force;
+    sum_of_squares += force * force;
+    most = std::max(most, error);
+    felt += static_cast<std::size_t>(error > jnd.at(force));
   }
+  const auto n = static_cast<double>(rows);
   const double total = sum_of_squares - sum * sum / n;
   const RootMeanSquares errors = rms_of(residuals, samples);
   const double squares = n * errors.seen * errors.seen;
   result.rmse = errors.seen;
   result.max_abs = most;
   result.r2 = total > 0.0 ? 1.0 - squares / total : 0.0;
-  result.jnd_fraction = felt / n;
+  result.jnd_fraction = static_cast<double>(felt) / n;
   result.effective_samples = n;
   result.test_rmse = errors.test;
 }
@@ -69,6 +83,7 @@ void measure_errors(FitResult& result, const std::vector<double>& residuals, con
 void measure_in_free_air(FitResult& result, const std::vector<double>& residuals, const Samples& samples,
                          const FitOptions& options) {
   constexpr std::size_t fewest = 100;
+  if (samples.size() - result.samples < fewest) return;
   double first = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (samples.counts[i] != 0) first = std::min(first, samples.motion[i].penetration);

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include <Eigen/Core>
-#include <boost/math/statistics/univariate_statistics.hpp>
 
 #include "uncertainty/statistics.h"
 
@@ -99,8 +98,7 @@ Periods periods_of(std::span<const double> time_s) {
     all.assign(all.size(), periods.median_s);
     return periods;
   }
-  std::vector<double> sorted(all.begin() + 1, all.end());
-  periods.median_s = boost::math::statistics::median(sorted);
+  periods.median_s = median_of({all.begin() + 1, all.end()});
   // Uniform sampling up to rounding is uniform: laws keep what they derive from the period.
   for (double& period : all) {
     if (std::abs(period - periods.median_s) < 1e-6 * periods.median_s) period = periods.median_s;

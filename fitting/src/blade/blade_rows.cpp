@@ -5,8 +5,9 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
-#include <boost/math/statistics/univariate_statistics.hpp>
+#include "uncertainty/statistics.h"
 
 namespace kerf::fitting {
 namespace {
@@ -66,7 +67,7 @@ Vector3d three(std::span<const double> values, std::size_t at) {
 double median_step(std::span<const double> time_s) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < time_s.size(); ++i) steps.push_back(time_s[i] - time_s[i - 1]);
-  return boost::math::statistics::median(steps);
+  return median_of(std::move(steps));
 }
 
 }  // namespace

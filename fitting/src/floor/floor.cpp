@@ -9,11 +9,11 @@
 #include <utility>
 
 #include <Eigen/Cholesky>
-#include <boost/math/statistics/univariate_statistics.hpp>
 
 #include "floor/force_map.h"
 #include "kerf/fitting/checked_recordings.h"
 #include "samples.h"
+#include "uncertainty/statistics.h"
 
 namespace kerf::fitting {
 namespace {
@@ -218,7 +218,7 @@ double quantum_of(std::vector<double> force) {
   if (4 * force.size() > count || force.size() < 3) return 0.0;
   std::vector<double> steps;
   for (std::size_t i = 1; i < force.size(); ++i) steps.push_back(force[i] - force[i - 1]);
-  return boost::math::statistics::median(steps);
+  return median_of(std::move(steps));
 }
 
 double squared(double value) { return value * value; }
