@@ -1,5 +1,6 @@
 #include "uncertainty/statistics.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -36,6 +37,34 @@ TEST(CorrelationTime, DoesNotDependOnTheUnit) {
 TEST(CorrelationTime, IsNeverLessThanASample) {
   EXPECT_EQ(correlation_time(first_order(-0.5, 1.0)), 1.0);
   EXPECT_EQ(correlation_time(std::vector<double>(50, 2.5)), 1.0);
+}
+
+/// That of the values in order.
+double sorted_median(std::vector<double> values) {
+  std::ranges::sort(values);
+  return 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
+}
+
+TEST(Median, OfVeryManyValuesIsTheOneInTheMiddleOfAllInOrder) {
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> normal;
+  for (const std::size_t count : {1UL, 2UL, 7UL, 8191UL, 8192UL, 30'000UL, 60'001UL}) {
+    std::vector<double> noise(count);
+    for (double& value : noise) value = std::abs(normal(random));
+    EXPECT_EQ(median_of(noise), sorted_median(noise)) << count;
+    for (double& value : noise) value = 0.1 * std::floor(10.0 * value);
+    EXPECT_EQ(median_of(noise), sorted_median(noise)) << "of a coarse sensor, " << count;
+    std::ranges::sort(noise);
+    EXPECT_EQ(median_of(noise), sorted_median(noise)) << "in order, " << count;
+  }
+}
+
+// One value in thirty, and those are all that is looked at first.
+TEST(Median, IsFoundWhereAFewValuesMislead) {
+  std::vector<double> values(61'440);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] = i % 30 == 0 ? 1000.0 + static_cast<double>(i) : static_cast<double>(i % 7919);
+  EXPECT_EQ(median_of(values), sorted_median(values));
 }
 
 TEST(StudentT, IsThatOfTheTables) {
