@@ -3,6 +3,7 @@
 #include <functional>
 #include <iomanip>
 #include <sstream>
+#include <utility>
 #include <vector>
 
 #include "kerf/fitting/fit.h"
@@ -31,6 +32,14 @@ std::vector<const FitResult*> eligible(std::span<const FitResult> results, Measu
   const auto determined = [](const FitResult* law) { return law->undetermined_arms == 0; };
   if (std::ranges::any_of(laws, determined)) std::erase_if(laws, std::not_fn(determined));
   return laws;
+}
+
+/// Where a law stands among all that there are: of those with as many parameters the first there is taken,
+/// whichever was asked for first.
+std::size_t place_of(const FitResult& law) {
+  const std::vector<models::LawInfo> all = models::registry();
+  const auto found = std::ranges::find(all, law.model, &models::LawInfo::name);
+  return static_cast<std::size_t>(found - all.begin());
 }
 
 /// By which of its errors a law is judged, in the words of the tables that have a column for each.
@@ -98,8 +107,8 @@ Choice choose_simplest(std::span<const FitResult> results, const Series& series,
     return options.folds > 0 ? as_good_as(*result, *best, limit)
                              : left_out(error(*result), error(*best)) <= limit;
   };
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const auto* a, const auto* b) { return a->free_parameters < b->free_parameters; });
+  std::ranges::stable_sort(
+      candidates, {}, [](const FitResult* law) { return std::pair(law->free_parameters, place_of(*law)); });
   const auto chosen = *std::ranges::find_if(candidates, serves);
   std::ostringstream why;
   why << std::setprecision(3);
@@ -113,7 +122,12 @@ Choice choose_simplest(std::span<const FitResult> results, const Series& series,
         << " within the JND of " << limit << unit << " (at the root mean square force of " << force_rms
         << unit << ") on " << held_out_in_words(*chosen, options) << "; " << chosen->model << " with "
         << error(*chosen) << unit << " has the fewest parameters (" << chosen->free_parameters
-        << ") of those that do as well as the best, " << best->model << " with " << error(*best) << unit;
+        << ") of those that do as well as the best";
+    if (chosen == best) {
+      why << ", which it is itself";
+    } else {
+      why << ", " << best->model << " with " << error(*best) << unit;
+    }
   } else {
     why << chosen->model << " has the fewest parameters (" << chosen->free_parameters
         << ") of the laws whose error on " << held_out_in_words(*chosen, options) << " (" << error(*chosen)
