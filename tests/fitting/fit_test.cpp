@@ -304,6 +304,27 @@ TEST(Choice, PassesOverALawThatTheDataDoNotTellFromASimplerOne) {
   EXPECT_EQ(choose_simplest(std::vector{two}, strokes.series(), {}).model, "maxwell") << "there is no other";
 }
 
+TEST(Choice, TakesOfAsManyParametersTheSameWhicheverWasAskedForFirst) {
+  const Strokes strokes(4000, 0.0, kelvin);
+  const double felt_n = 0.5 * rms_of(strokes.series());  // beyond the JND
+  for (const double error_n : {0.01, felt_n}) {
+    const FitResult one{
+        .model = "kelvin", .free_parameters = 3, .r2 = 0.9, .cv_rmse = error_n, .converged = true};
+    FitResult other(one);
+    other.model = "maxwell";
+    other.cv_rmse = error_n * (1.0 - 1e-9);  // the same law, written otherwise
+    const Choice forth = choose_simplest(std::vector{one, other}, strokes.series(), {});
+    const Choice back = choose_simplest(std::vector{other, one}, strokes.series(), {});
+    EXPECT_EQ(forth.model, "kelvin");
+    EXPECT_EQ(back.model, "kelvin");
+    EXPECT_EQ(forth.why, back.why);
+  }
+  const FitResult best{
+      .model = "kelvin", .free_parameters = 3, .r2 = 0.9, .cv_rmse = felt_n, .converged = true};
+  EXPECT_THAT(choose_simplest(std::vector{best}, strokes.series(), {}).why,
+              HasSubstr("do as well as the best, which it is itself"));
+}
+
 TEST(Choice, NamesNoLawWhereNoForceIsFelt) {
   const Strokes idle(4000, 0.01, Law::make("precontact", std::vector{1e-9, 1e-6}));
   const std::vector results{fit("friction", idle.series(true))};
