@@ -10,6 +10,7 @@
 #include <boost/math/statistics/univariate_statistics.hpp>
 #include <fmt/ranges.h>
 
+#include <kerf/models/law.h>
 #include <kerf/population/held_out.h>
 
 #include "results/conclusions.h"
@@ -168,6 +169,26 @@ LawInGroup law_in_group(const StudyResults& results, const StudiedGroup& group, 
   return found;
 }
 
+/// In the order of `kerf laws`, so that of laws that serve alike the first there is taken, as by a fit.
+std::vector<std::string> as_listed(std::vector<std::string> models) {
+  const std::vector<models::LawInfo> all = models::registry();
+  std::ranges::stable_sort(models, {}, [&](const std::string& model) {
+    return std::ranges::find(all, model, &models::LawInfo::name) - all.begin();
+  });
+  return models;
+}
+
+/// The simplest of those that serve every recording that counts.
+std::string serving_all(const StudyResults& results, const StudiedGroup& group) {
+  const LawInGroup* simplest = nullptr;
+  for (const std::string& model : as_listed(results.plan.laws)) {
+    const LawInGroup& law = *std::ranges::find(group.laws, model, &LawInGroup::model);
+    if (law.serves < group.counted.size()) continue;
+    if (simplest == nullptr || law.free_parameters < simplest->free_parameters) simplest = &law;
+  }
+  return simplest == nullptr ? "" : simplest->model;
+}
+
 void judge_group(const StudyResults& results, StudiedGroup& group) {
   if (group.counted.empty()) return;
   const StudiedRecording& first = results.recordings[group.counted.front()].result;
@@ -179,19 +200,14 @@ void judge_group(const StudyResults& results, StudiedGroup& group) {
     for (StudiedQuantity& quantity : parameters_in_group(results, group, model))
       group.quantities.push_back(std::move(quantity));
   }
-  for (const LawInGroup& law : group.laws) {
-    if (law.serves < group.counted.size()) continue;
-    const auto serving = std::ranges::find(group.laws, group.serving, &LawInGroup::model);
-    if (serving == group.laws.end() || law.free_parameters < serving->free_parameters)
-      group.serving = law.model;
-  }
+  group.serving = serving_all(results, group);
 }
 
-/// That serves most recordings of the study; of those the one with fewest parameters.
+/// That serves most recordings of the study; of those the one with fewest parameters, then the first listed.
 std::string law_of_study(const StudyResults& results) {
   std::string best;
   std::pair<std::size_t, std::size_t> most{0, 0};  // recordings, parameters
-  for (const std::string& model : results.plan.laws) {
+  for (const std::string& model : as_listed(results.plan.laws)) {
     std::size_t serves = 0;
     std::size_t parameters = 0;
     for (const StudiedGroup& group : results.groups) {
