@@ -25,7 +25,7 @@ void add_job_routes(Routes& routes, Jobs& jobs) {
   routes.get("/api/jobs/log", Pace::slow, [&jobs](const HttpRequest& request) {
     return json_response({{"text", jobs.log_of(job_in_query(request))}});
   });
-  routes.post("/api/jobs/stop", Pace::action, [&jobs](const HttpRequest& request) {
+  routes.post("/api/jobs/stop", Pace::stop, [&jobs](const HttpRequest& request) {
     jobs.stop(job_in(request));
     return json_response(nlohmann::ordered_json::object());
   });

@@ -53,8 +53,9 @@ HttpResponse bytes_response(std::string bytes) {
 
 Routes::Routes() {
   const WithoutSignals none;
-  threads_[0] = std::jthread([this](const std::stop_token& stop) { answer_slowly(Pace::slow, stop); });
-  threads_[1] = std::jthread([this](const std::stop_token& stop) { answer_slowly(Pace::action, stop); });
+  auto thread = threads_.begin();
+  for (const Pace pace : {Pace::slow, Pace::action, Pace::stop})
+    *thread++ = std::jthread([this, pace](const std::stop_token& stop) { answer_slowly(pace, stop); });
 }
 
 Routes::~Routes() = default;

@@ -57,13 +57,14 @@ struct RequestError : std::runtime_error {
 
 /// Which function answers which request. What is at_once is answered by the server's thread and must be done
 /// in a millisecond; what is slow (files, fits) by a thread of its own, in order, off the loop's processor;
-/// what acts on the device or a recording by another one, so that it waits for no file.
+/// what acts on the device or a recording by another one, so that it waits for no file; what stops a job by a
+/// third, so that it waits for no device that is being opened.
 ///
 /// An exception becomes an answer with {"error": TEXT}: RequestError its status, std::invalid_argument and
 /// schema::FormatError 400, drivers::DeviceError and std::system_error 500, anything else 500.
 class Routes {
  public:
-  enum class Pace : std::uint8_t { at_once, slow, action };
+  enum class Pace : std::uint8_t { at_once, slow, action, stop };
   using Answer = std::function<HttpResponse(const HttpRequest&)>;
 
   Routes();
@@ -104,7 +105,7 @@ class Routes {
   std::mutex mutex_;  ///< of waiting_
   std::condition_variable_any changed_;
   std::map<std::uint64_t, Waiting> waiting_;  ///< by the request's number: oldest first
-  std::array<std::jthread, 2> threads_;       ///< last: use the rest
+  std::array<std::jthread, 3> threads_;       ///< last: use the rest
 };
 
 }  // namespace kerf::bench
