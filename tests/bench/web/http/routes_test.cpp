@@ -75,6 +75,26 @@ TEST(Routes, ActWhileSomethingSlowIsBeingAnswered) {
   EXPECT_EQ(waited_for(routes, asking("GET", "/slow", asker, 1)).body, "done");
 }
 
+TEST(Routes, StopAJobWhileADeviceIsBeingOpenedAndAFileRead) {
+  std::atomic<bool> go{false};
+  Routes routes;  // ends before what its threads look at
+  const auto waits = [&](const HttpRequest&) {
+    while (!go) std::this_thread::yield();
+    return HttpResponse{.body = "done"};
+  };
+  routes.get("/read", Routes::Pace::slow, waits);
+  routes.post("/open", Routes::Pace::action, waits);
+  routes.post("/stop", Routes::Pace::stop,
+              [](const HttpRequest&) { return HttpResponse{.body = "stopped"}; });
+  const auto asker = std::make_shared<int>();
+  EXPECT_FALSE(routes.respond(asking("GET", "/read", asker, 1), false));
+  EXPECT_FALSE(routes.respond(asking("POST", "/open", asker, 2), false));
+  EXPECT_EQ(waited_for(routes, asking("POST", "/stop", asker, 3)).body, "stopped");
+  go = true;
+  EXPECT_EQ(waited_for(routes, asking("GET", "/read", asker, 1)).body, "done");
+  EXPECT_EQ(waited_for(routes, asking("POST", "/open", asker, 2)).body, "done");
+}
+
 TEST(Routes, DoNotDoLaterWhatWasRefusedAsOverdue) {
   std::atomic<bool> go{false};
   std::atomic<int> done{0};
