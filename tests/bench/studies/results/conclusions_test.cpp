@@ -47,6 +47,24 @@ TEST(Conclusions, NameTheLawThatServesAndOfHowManySpecimens) {
                   "liver, slow: kelvin serves, with 3 parameters, in each of 5 recordings of 5 specimens")));
 }
 
+TEST(StudyResults, TakeOfLawsThatServeAlikeTheSameInWhicheverOrderTheyAreGiven) {
+  for (const std::vector<std::string>& laws :
+       {std::vector<std::string>{"kelvin", "maxwell"}, std::vector<std::string>{"maxwell", "kelvin"}}) {
+    StudyResults results;
+    results.plan.laws = laws;
+    results.recordings = five_specimens("liver", 1.0);
+    for (DrawerRecording& one : results.recordings) {
+      one.result.laws.push_back(one.result.laws.front());
+      one.result.laws.back().model = "maxwell";
+      results.plan.files.push_back(one.file);
+    }
+    form_groups(results);
+    conclude(results);
+    EXPECT_EQ(results.groups.at(0).serving, "kelvin");
+    EXPECT_EQ(results.law, "kelvin");
+  }
+}
+
 TEST(StudyResults, CallTheWorkOfAClosingAnEnergyOnlyWhereItIsOne) {
   const auto unit_of_work = [](const StudyResults& results) {
     const auto& quantities = results.groups.at(0).quantities;
