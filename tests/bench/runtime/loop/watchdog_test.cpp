@@ -60,6 +60,24 @@ TEST(Heartbeat, SaysThatNobodyReleasedTheDeviceWhileTheWholeProcessStoodStill) {
   EXPECT_EQ(heartbeat.stalls()[0].released_after_ns, 0);
 }
 
+TEST(Heartbeat, AsksForZeroForceWhileItIsSuspendedAndOnceAfterAndCallsNoLaterStallASuspension) {
+  Heartbeat heartbeat;
+  heartbeat.start(0);
+  EXPECT_FALSE(heartbeat.beat(1 * ms, 10 * ms));
+  heartbeat.suspend();
+  EXPECT_TRUE(heartbeat.beat(2 * ms, 10 * ms));
+  EXPECT_TRUE(heartbeat.beat(3 * ms, 10 * ms));
+  EXPECT_TRUE(heartbeat.stalls().empty()) << "the loop goes on until the process is stopped";
+  heartbeat.resume();
+  EXPECT_TRUE(heartbeat.beat(4003 * ms, 10 * ms)) << "the process stood still";
+  EXPECT_FALSE(heartbeat.beat(4004 * ms, 10 * ms));
+  EXPECT_TRUE(heartbeat.beat(4104 * ms, 10 * ms));
+  ASSERT_EQ(heartbeat.stalls().size(), 2U);
+  EXPECT_TRUE(heartbeat.stalls()[0].suspended);
+  EXPECT_EQ(heartbeat.stalls()[0].silent_ns, 4000 * ms);
+  EXPECT_FALSE(heartbeat.stalls()[1].suspended);
+}
+
 TEST(Heartbeat, OfALoopThatIsNotRunningIsNotMissed) {
   Heartbeat heartbeat;
   ReleasedDevice device;
