@@ -247,10 +247,11 @@ TEST(Intervals, OfWhiteNoiseAreNearlyThoseOfNoiseThatProvesWhite) {
   }
 }
 
-// A law that misfits, whose interval is a profile where it is asked for.
+// An arm that fades within a few samples is known too badly for Wald. It is known: where the least lies along
+// an arm that is not there, rounding decides, and with it the processor.
 TEST(Intervals, OfWhiteNoiseAskForNoProfile) {
-  const Strokes strokes(2000, 0.5, Law::make("maxwell", std::vector{100.0, 60.0, 30.0, 0.02, 0.4}));
-  const FitOptions with{.law_options = {{"arms", 3.0}}, .folds = 0};
+  const Strokes strokes(2000, 0.1, Law::make("maxwell", std::vector{100.0, 60.0, 30.0, 0.02, 0.4}));
+  const FitOptions with{.law_options = {{"arms", 2.0}}, .folds = 0};
   FitOptions without(with);
   without.intervals = Intervals::white;
   const auto is_profile = [](const Estimate& estimate) { return estimate.by == IntervalBy::profile; };
