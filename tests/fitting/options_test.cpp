@@ -247,8 +247,8 @@ TEST(Intervals, OfWhiteNoiseAreNearlyThoseOfNoiseThatProvesWhite) {
   }
 }
 
-// An arm that fades within a few samples is known too badly for Wald. It is known: where the least lies along
-// an arm that is not there, rounding decides, and with it the processor.
+// An arm that fades within twenty samples is known too badly for Wald's interval. The data have it: along one
+// that they do not have, rounding decides where the least lies.
 TEST(Intervals, OfWhiteNoiseAskForNoProfile) {
   const Strokes strokes(2000, 0.1, Law::make("maxwell", std::vector{100.0, 60.0, 30.0, 0.02, 0.4}));
   const FitOptions with{.law_options = {{"arms", 2.0}}, .folds = 0};
