@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include <kerf/models/law.h>
+
 #include "kerf/fitting/fit.h"
 #include "training/held_out.h"
 
@@ -32,14 +34,6 @@ std::vector<const FitResult*> eligible(std::span<const FitResult> results, Measu
   const auto determined = [](const FitResult* law) { return law->undetermined_arms == 0; };
   if (std::ranges::any_of(laws, determined)) std::erase_if(laws, std::not_fn(determined));
   return laws;
-}
-
-/// Where a law stands among all that there are: of those with as many parameters the first there is taken,
-/// whichever was asked for first.
-std::size_t place_of(const FitResult& law) {
-  const std::vector<models::LawInfo> all = models::registry();
-  const auto found = std::ranges::find(all, law.model, &models::LawInfo::name);
-  return static_cast<std::size_t>(found - all.begin());
 }
 
 /// By which of its errors a law is judged, in the words of the tables that have a column for each.
@@ -107,8 +101,9 @@ Choice choose_simplest(std::span<const FitResult> results, const Series& series,
     return options.folds > 0 ? as_good_as(*result, *best, limit)
                              : left_out(error(*result), error(*best)) <= limit;
   };
-  std::ranges::stable_sort(
-      candidates, {}, [](const FitResult* law) { return std::pair(law->free_parameters, place_of(*law)); });
+  std::ranges::stable_sort(candidates, {}, [](const FitResult* law) {
+    return std::pair(law->free_parameters, models::place_in_registry(law->model));
+  });
   const auto chosen = *std::ranges::find_if(candidates, serves);
   std::ostringstream why;
   why << std::setprecision(3);

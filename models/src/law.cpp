@@ -173,6 +173,11 @@ std::vector<LawInfo> registry() {
   return laws;
 }
 
+std::size_t place_in_registry(std::string_view model) {
+  const std::vector<LawInfo> all = registry();
+  return static_cast<std::size_t>(std::ranges::find(all, model, &LawInfo::name) - all.begin());
+}
+
 LawInfo law_info(std::string_view model) {
   if (const ForeignLaw* const foreign = foreign_law(model)) return foreign->info();
   return dispatch(model, []<Place I>() { return info_of<LawAt<I>>(); });

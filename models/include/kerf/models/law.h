@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -24,6 +25,9 @@ struct LawInfo {
   std::string_view force_unit;     ///< likewise
 };
 [[nodiscard]] std::vector<LawInfo> registry();
+/// Where a law stands in registry(): of laws that serve alike the first there is taken, whichever was asked
+/// for first. An unknown law stands behind all.
+[[nodiscard]] std::size_t place_in_registry(std::string_view model);
 /// @throws std::invalid_argument for an unknown law.
 [[nodiscard]] LawInfo law_info(std::string_view model);
 [[nodiscard]] const LawFacts& law_facts(std::string_view model);
