@@ -1,7 +1,6 @@
 #include "uncertainty/uncertainty.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -22,50 +21,64 @@ using Eigen::Index;
 // only: the level to which the study of coverage leads.
 constexpr double flicker_variance = 0.1;
 
-/// y_s -= sum a_k y_{s-k}, on columns of P numbers, that stay in registers.
+/// A column of `P` numbers, Eigen::Dynamic of as many as there are.
 template <int P>
-void recur_few(double* at, const double* a, Index count) {
-  std::array<double, P> sum{};
-  std::copy_n(at, P, sum.begin());
-  for (Index k = 0; k < count; ++k) {
-    const double* before = at - (k + 1) * P;
-    for (int i = 0; i < P; ++i) sum[static_cast<std::size_t>(i)] -= a[k] * before[i];
+using Column = Eigen::Map<Eigen::Matrix<double, P, 1>>;
+
+/// Calls `f.template operator()<P>()`: few numbers stay in registers.
+template <typename F>
+auto for_few(Index numbers, F&& f) {
+  switch (numbers) {
+    case 1:
+      return f.template operator()<1>();
+    case 2:
+      return f.template operator()<2>();
+    case 3:
+      return f.template operator()<3>();
+    case 4:
+      return f.template operator()<4>();
+    default:
+      return f.template operator()<Eigen::Dynamic>();
   }
-  std::copy_n(sum.begin(), P, at);
 }
 
-/// The same of any number.
+/// y_s -= sum a_k y_{s-k}
+template <int P>
 void recur(Eigen::MatrixXd& y, Index s, const Eigen::VectorXd& a) {
   const Index p = y.rows();
-  const Index count = std::min(a.size(), s);
-  double* at = y.col(s).data();
-  if (p == 1) return recur_few<1>(at, a.data(), count);
-  if (p == 2) return recur_few<2>(at, a.data(), count);
-  if (p == 3) return recur_few<3>(at, a.data(), count);
-  if (p == 4) return recur_few<4>(at, a.data(), count);
-  for (Index k = 0; k < count; ++k) {
-    const double* before = at - (k + 1) * p;
-    for (Index i = 0; i < p; ++i) at[i] -= a[k] * before[i];
+  double* const at = y.data() + s * p;
+  const auto subtract = [&](auto& sum) {
+    for (Index k = 0; k < std::min(a.size(), s); ++k) sum -= a[k] * Column<P>(at - (k + 1) * p, p);
+  };
+  Column<P> here(at, p);
+  if constexpr (P == Eigen::Dynamic) {
+    subtract(here);
+  } else {
+    Eigen::Matrix<double, P, 1> sum = here;
+    subtract(sum);
+    here = sum;
   }
 }
 
 /// y = H^T x, where H makes noise of innovations: x^T e = y^T w. It runs backwards in time and on before the
 /// start of the run, since noise was there before the recording. Columns in reversed order.
+template <int P>
 Eigen::MatrixXd adjoint(const Eigen::MatrixXd& rows, const Rows& run, const Eigen::VectorXd& a,
                         const std::vector<Pair>& flicker) {
   constexpr Index longest = 4;  // runs, for noise whose memory outlasts the recording
   constexpr double faded = 1e-8;
+  const Index p = rows.rows();
   const Index q = a.size();
   const Index n = run.count();
   const Index most = q == 0 && flicker.empty() ? n : (1 + longest) * n;
-  Eigen::MatrixXd y(rows.rows(), most);
+  Eigen::MatrixXd y(p, most);
   double energy = 0.0;
   double recent = 0.0;
-  Eigen::MatrixXd memory = Eigen::MatrixXd::Zero(rows.rows(), 2 * static_cast<Index>(flicker.size()));
+  Eigen::MatrixXd memory = Eigen::MatrixXd::Zero(p, 2 * static_cast<Index>(flicker.size()));
   for (Index s = 0; s < most; ++s) {
-    auto value = y.col(s);
+    Column<P> value(y.data() + s * p, p);
     if (s < n) {
-      value = rows.col(run.end - 1 - s);
+      value = Eigen::Map<const Eigen::Matrix<double, P, 1>>(rows.data() + (run.end - 1 - s) * p, p);
     } else {
       value.setZero();
     }
@@ -76,12 +89,13 @@ Eigen::MatrixXd adjoint(const Eigen::MatrixXd& rows, const Rows& run, const Eige
       input = value;
       value = output;
     }
-    recur(y, s, a);
+    recur<P>(y, s, a);
     const double square = value.squaredNorm();
     energy += square;
     recent = std::max(square, s % (q + 1) == 0 ? 0.0 : recent);
     if (s >= n + q && s % (q + 1) == q && recent * static_cast<double>(n) < faded * energy) {
-      return y.leftCols(s + 1);
+      y.conservativeResize(p, s + 1);
+      break;
     }
   }
   return y;
@@ -95,15 +109,34 @@ struct Propagated {
 };
 
 /// Derivatives of sum y^2 by the coefficients of the filter.
+template <int P>
 Eigen::MatrixXd slope_of(const Eigen::MatrixXd& y, const Eigen::VectorXd& a) {
-  Eigen::MatrixXd slope(y.rows(), a.size());
+  const Index p = y.rows();
+  Eigen::MatrixXd slope = Eigen::MatrixXd::Zero(p, a.size());
   Eigen::MatrixXd z = y;
-  for (Index s = 0; s < y.cols(); ++s) recur(z, s, a);
-  for (Index k = 1; k <= a.size(); ++k) {
-    const Index count = y.cols() - k;
-    slope.col(k - 1) = -2.0 * y.rightCols(count).cwiseProduct(z.leftCols(count)).rowwise().sum();
+  for (Index s = 0; s < y.cols(); ++s) {
+    recur<P>(z, s, a);
+    const Column<P> here(z.data() + s * p, p);
+    for (Index k = 1; k <= std::min(a.size(), y.cols() - 1 - s); ++k)
+      Column<P>(slope.col(k - 1).data(), p) -=
+          2.0 * here.cwiseProduct(Eigen::Map<const Eigen::Matrix<double, P, 1>>(y.data() + (s + k) * p, p));
   }
   return slope;
+}
+
+/// Adds y y^T, of few rows without packing them for a product of matrices.
+template <int P>
+void add_squares(const Eigen::MatrixXd& y, Eigen::MatrixXd& sum) {
+  if constexpr (P == Eigen::Dynamic) {
+    sum.noalias() += y * y.transpose();
+  } else {
+    Eigen::Matrix<double, P, P> squares = Eigen::Matrix<double, P, P>::Zero();
+    for (Index s = 0; s < y.cols(); ++s) {
+      const Eigen::Matrix<double, P, 1> column(y.data() + s * P);
+      squares.noalias() += column * column.transpose();
+    }
+    Eigen::Map<Eigen::Matrix<double, P, P>>(sum.data()) += squares;
+  }
 }
 
 Propagated propagate(const Eigen::MatrixXd& weights, const std::vector<Rows>& runs, const Noise& noise,
@@ -118,9 +151,12 @@ Propagated propagate(const Eigen::MatrixXd& weights, const std::vector<Rows>& ru
   std::vector<Eigen::MatrixXd> parts;
   Index columns = 0;
   for (const Rows& run : runs) {
-    Eigen::MatrixXd y = adjoint(weights, run, a, stage.model.flicker);
-    sum.noalias() += y * y.transpose();
-    if (q > 0) slope += slope_of(y, a);
+    const Eigen::MatrixXd y = for_few(p, [&]<int P>() {
+      Eigen::MatrixXd adjoined = adjoint<P>(weights, run, a, stage.model.flicker);
+      add_squares<P>(adjoined, sum);
+      if (q > 0) slope += slope_of<P>(adjoined, a);
+      return adjoined;
+    });
     if (last) continue;
     std::vector<Rows> whole{{0, y.cols()}};
     parts.push_back(in_blocks(y, whole, noise.stages[at + 1].size));
