@@ -17,6 +17,7 @@ struct Linearisation {
   std::vector<double> scale;  ///< of each parameter, what counts as a change as large as itself: 1 on a
                               ///< logarithmic scale, a typical size on a linear one; empty for ones
   Eigen::MatrixXd normal{};   ///< J^T J; empty: not formed yet
+  Eigen::VectorXd score{};    ///< J^T r, formed with it
   /// What the residuals change by if the penetration of each run is larger by one standard error of its
   /// zero, times sqrt(weight); empty: all are taken for exact.
   Eigen::VectorXd contact_shift{};
@@ -47,8 +48,11 @@ struct Basis {
   std::vector<bool> lost;      ///< of each parameter: some of it lies in the null space
 };
 /// columns^T columns
-[[nodiscard]] Eigen::MatrixXd gram(const Eigen::MatrixXd& columns);
+[[nodiscard]] Eigen::MatrixXd gram(const Eigen::Ref<const Eigen::MatrixXd>& columns);
 [[nodiscard]] Basis basis_of(const Eigen::MatrixXd& normal);
+
+/// Forms J^T J and J^T r.
+void form_products(Linearisation& linearisation);
 
 /// Coarsens by octaves as long as the blocks keep all but 0.1 % (3 % of very many) of every direction of Q.
 /// What a derivative is blind to, such as noise at 400 Hz under a stroke of 1 Hz, need not be modelled, and

@@ -229,9 +229,7 @@ class Estimation {
   [[nodiscard]] std::vector<Limits> limits_within(const Problem& inner, const LawObjective& objective,
                                                   const Eigen::VectorXd& at, const Linearisation& linear,
                                                   Uncertainty& uncertainty) const {
-    Sums sums{.squares = linear.residuals.squaredNorm(),
-              .score = linear.jacobian.transpose() * linear.residuals,
-              .normal = linear.normal};
+    Sums sums{.squares = linear.residuals.squaredNorm(), .score = linear.score, .normal = linear.normal};
     if (loss_.kind != Loss::squares && !objective.evaluate(at, sums))  // whose squares cost less
       return std::vector<Limits>(uncertainty.determined.size());
     Eigen::MatrixXd hessian = sums.normal;
@@ -280,8 +278,7 @@ class Estimation {
   [[nodiscard]] bool is_least(const Linearisation& linear) {
     constexpr double negligible = 0.02;  // of the rise in one standard error
     result_.correlation_time = correlation_time({linear.residuals.begin(), linear.residuals.end()});
-    const Eigen::VectorXd score = linear.jacobian.transpose() * linear.residuals;
-    const double promise = score.dot(solve_normal(linear.normal, score));
+    const double promise = linear.score.dot(solve_normal(linear.normal, linear.score));
     const double unit = linear.residuals.squaredNorm() * result_.correlation_time /
                         static_cast<double>(linear.residuals.size());
     return promise <= negligible * unit;

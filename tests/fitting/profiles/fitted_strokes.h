@@ -69,9 +69,7 @@ inline std::vector<Limits> limits(const FittedStrokes& strokes,
   const LawObjective objective = strokes.objective();
   const Linearisation linear = strokes.linear();
   const Uncertainty uncertainty = uncertainty_of(linear, 0.95);
-  const Sums sums{.squares = linear.residuals.squaredNorm(),
-                  .score = linear.jacobian.transpose() * linear.residuals,
-                  .normal = linear.normal};
+  const Sums sums{.squares = linear.residuals.squaredNorm(), .score = linear.score, .normal = linear.normal};
   return limits_of(strokes.problem, objective, strokes.best(), sums, sums.normal, uncertainty, linear.scale,
                    1, cheaper);
 }
