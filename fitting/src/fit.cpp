@@ -1,6 +1,7 @@
 #include "kerf/fitting/fit.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -24,25 +25,15 @@ struct RootMeanSquares {
   double seen = nothing, test = nothing;
 };
 RootMeanSquares rms_of(const std::vector<double>& residuals, const Samples& samples) {
-  double seen = 0.0;
-  double test = 0.0;
-  std::size_t seen_rows = 0;
-  std::size_t test_rows = 0;
-  for (std::size_t i = 0; i < residuals.size(); ++i) {
-    if (samples.counts[i] == 0) continue;
-    const double square = residuals[i] * residuals[i];
-    if (samples.fold[i] == Samples::test) {
-      test += square;
-      ++test_rows;
-    } else {
-      seen += square;
-      ++seen_rows;
-    }
-  }
-  const auto root = [](double squares, std::size_t rows) {
-    return rows > 0 ? std::sqrt(squares / static_cast<double>(rows)) : nothing;
+  const auto rms = [](Numbers numbers) {
+    return numbers.size() > 0 ? std::sqrt(numbers.square().mean()) : nothing;
   };
-  return {.seen = root(seen, seen_rows), .test = root(test, test_rows)};
+  std::vector<double> kept;
+  std::vector<double> held_back;
+  for (std::size_t i = 0; i < residuals.size() && !samples.all_seen; ++i) {
+    if (samples.counts[i] != 0 && samples.fold[i] == Samples::test) held_back.push_back(residuals[i]);
+  }
+  return {.seen = rms(seen_of(samples, residuals, kept)), .test = rms(numbers_of(held_back))};
 }
 
 void tell_a_part(const FitOptions& options) {
@@ -51,27 +42,17 @@ void tell_a_part(const FitOptions& options) {
 
 void measure_errors(FitResult& result, const std::vector<double>& residuals, const Samples& samples,
                     const Jnd& jnd) {
-  double sum = 0.0;
-  double sum_of_squares = 0.0;
-  double most = 0.0;
-  std::size_t rows = 0;
-  std::size_t felt = 0;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (samples.fold[i] == Samples::test || samples.counts[i] == 0) continue;
-    const double force = samples.force[i];
-    const double error = std::abs(residuals[i]);
-    ++rows;
-    sum += force;
-    sum_of_squares += force * force;
-    most = std::max(most, error);
-    felt += static_cast<std::size_t>(error > jnd.at(force));
-  }
-  const auto n = static_cast<double>(rows);
-  const double total = sum_of_squares - sum * sum / n;
+  std::array<std::vector<double>, 2> kept;
+  const Numbers force = seen_of(samples, samples.force, kept[0]);
+  const Numbers left = seen_of(samples, residuals, kept[1]);
+  const auto n = static_cast<double>(force.size());
+  Eigen::Index felt = 0;
+  for (Eigen::Index i = 0; i < force.size(); ++i) felt += std::abs(left[i]) > jnd.at(force[i]) ? 1 : 0;
+  const double total = force.square().sum() - n * force.mean() * force.mean();
   const RootMeanSquares errors = rms_of(residuals, samples);
   const double squares = n * errors.seen * errors.seen;
   result.rmse = errors.seen;
-  result.max_abs = most;
+  result.max_abs = left.size() > 0 ? left.abs().maxCoeff() : 0.0;
   result.r2 = total > 0.0 ? 1.0 - squares / total : 0.0;
   result.jnd_fraction = static_cast<double>(felt) / n;
   result.effective_samples = n;
@@ -117,15 +98,15 @@ void measure_rendered(FitResult& result, const std::vector<double>& residuals, c
 void warn_of_the_sensor(FitResult& result, const Samples& samples, const std::string& unit) {
   const double largest =
       *std::ranges::find(samples.force, samples.largest_force, [](double force) { return std::abs(force); });
+  const auto count = static_cast<std::size_t>((numbers_of(samples.force) == largest).count());
+  if (200 * count <= samples.size()) return;
   std::size_t longest = 0;
-  std::size_t count = 0;
   std::size_t row = 0;
   for (const double force : samples.force) {
     row = force == largest ? row + 1 : 0;
-    count += force == largest ? 1 : 0;
     longest = std::max(longest, row);
   }
-  if (longest >= 10 && 200 * count > samples.size()) {
+  if (longest >= 10) {
     std::ostringstream warning;
     warning << "the force stands at its largest value, " << largest << " " << unit << ", for " << count
             << " samples, up to " << longest << " in a row: the sensor may be saturated there";
@@ -156,6 +137,9 @@ void warn_of_pulling(FitResult& result, const Trained& law, const std::vector<do
   constexpr double beyond_noise = 4.0;
   constexpr double by_chance = 4.0;  // standard errors
   const double largest = samples.largest_force;
+  const auto pulls =
+      std::ranges::count_if(samples.force, [&](double f) { return f < -noteworthy * largest; });
+  if (static_cast<double>(pulls) < noteworthy * static_cast<double>(samples.size())) return;
   const double strong = std::max(noteworthy * largest, beyond_noise * noise_of_rows(samples));
   double pulling = 0.0;
   double pushing = 0.0;

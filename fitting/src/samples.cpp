@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
 
-#include <Eigen/Core>
-
+#include "infinite.h"
+#include "kernels/wide/range.h"
 #include "uncertainty/statistics.h"
 
 namespace kerf::fitting {
@@ -15,24 +16,22 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& reason) { throw std::invalid_argument("cannot fit: " + reason); }
 
-using Numbers = Eigen::Map<const Eigen::ArrayXd>;
-Numbers numbers_of(std::span<const double> values) {
-  return {values.data(), static_cast<Eigen::Index>(values.size())};
-}
-
-void check_finite(std::span<const double> values, const char* name) {
-  if ((0.0 * numbers_of(values)).sum() == 0.0) return;
+wide::Range check_finite(std::span<const double> values, const char* name) {
+  const wide::Range range = wide::range_of(values);
+  if (range.is_finite) return range;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (std::isfinite(values[i])) continue;
     std::ostringstream reason;
     reason << "the " << name << " of sample " << i << " is not finite; leave such samples out";
     refuse(reason.str());
   }
+  return range;
 }
 
+double largest_of(const wide::Range& range) { return std::max(-range.least, range.most); }
+
 /// What a sensor that is stuck gives, and one that failed once: no law is told by them.
-/// @returns the largest, either way
-double check_force(std::span<const double> force) {
+void check_force(std::span<const double> force, double largest) {
   constexpr std::size_t enough = 20;  // samples, of which one has no business to be more than all others
   if (std::ranges::all_of(force, [&](double one) { return one == force.front(); })) {
     if (force.front() == 0.0) refuse("the force is zero throughout");
@@ -41,8 +40,7 @@ double check_force(std::span<const double> force) {
     refuse(reason.str());
   }
   const double squares = numbers_of(force).square().sum();
-  const double largest = numbers_of(force).abs().maxCoeff();
-  if (force.size() < enough || 2.0 * largest * largest <= squares) return largest;
+  if (force.size() < enough || 2.0 * largest * largest <= squares) return;
   const auto first = std::ranges::find(force, largest, [](double one) { return std::abs(one); });
   std::ostringstream reason;
   reason << "the force of sample " << first - force.begin() << ", " << *first
@@ -50,8 +48,10 @@ double check_force(std::span<const double> force) {
   refuse(reason.str());
 }
 
-/// @returns the largest force, either way
-double check_columns(const Series& series) {
+struct Ranges {
+  wide::Range penetration, velocity, force;
+};
+Ranges check_columns(const Series& series) {
   const std::size_t count = series.force.size();
   if (series.time_s.size() != count || series.penetration.size() != count ||
       series.velocity.size() != count || (!series.cycle.empty() && series.cycle.size() != count) ||
@@ -60,17 +60,17 @@ double check_columns(const Series& series) {
   }
   if (count < 4) refuse("there are only " + std::to_string(count) + " samples");
   check_finite(series.time_s, "time");
-  check_finite(series.penetration, "penetration");
-  check_finite(series.velocity, "velocity");
-  check_finite(series.force, "force");
-  const double largest = check_force(series.force);
+  const Ranges ranges{.penetration = check_finite(series.penetration, "penetration"),
+                      .velocity = check_finite(series.velocity, "velocity"),
+                      .force = check_finite(series.force, "force")};
+  check_force(series.force, largest_of(ranges.force));
   if (!(series.noise_n >= 0.0) || !std::isfinite(series.noise_n)) {
     refuse("the noise of a recording must be a positive number, or 0 where it is not known");
   }
   if (!(series.contact_error >= 0.0) || !std::isfinite(series.contact_error)) {
     refuse("the error of a contact must be a positive number, or 0 where it is taken for exact");
   }
-  return largest;
+  return ranges;
 }
 
 /// Since the sample before; the first has that of the second.
@@ -80,24 +80,21 @@ struct Periods {
   bool are_even;  ///< but for rounding, which is taken out
 };
 Periods periods_of(std::span<const double> time_s) {
-  Periods periods{.all = std::vector<double>(time_s.size()), .median_s = 0.0, .are_even = false};
-  std::vector<double>& all = periods.all;
   const auto between = static_cast<Eigen::Index>(time_s.size() - 1);
-  Eigen::Map<Eigen::ArrayXd> each(all.data() + 1, between);
-  each = numbers_of(time_s).tail(between) - numbers_of(time_s).head(between);
-  all[0] = all[1];
+  const auto each = numbers_of(time_s).tail(between) - numbers_of(time_s).head(between);
   const double shortest = each.minCoeff();
   if (!(shortest > 0.0)) {
-    const auto first =
-        std::find_if(all.begin() + 1, all.end(), [](double period) { return !(period > 0.0); });
-    refuse("the time does not increase at sample " + std::to_string(first - all.begin()));
+    const auto first = std::ranges::adjacent_find(time_s, std::ranges::greater_equal());
+    refuse("the time does not increase at sample " + std::to_string(first - time_s.begin() + 1));
   }
   if (each.maxCoeff() - shortest < 1e-6 * shortest) {
-    periods.median_s = (time_s.back() - time_s.front()) / static_cast<double>(between);
-    periods.are_even = true;
-    all.assign(all.size(), periods.median_s);
-    return periods;
+    const double period_s = (time_s.back() - time_s.front()) / static_cast<double>(between);
+    return {.all = std::vector<double>(time_s.size(), period_s), .median_s = period_s, .are_even = true};
   }
+  Periods periods{.all = std::vector<double>(time_s.size()), .median_s = 0.0, .are_even = false};
+  std::vector<double>& all = periods.all;
+  Eigen::Map<Eigen::ArrayXd>(all.data() + 1, between) = each;
+  all[0] = all[1];
   periods.median_s = median_of({all.begin() + 1, all.end()});
   // Uniform sampling up to rounding is uniform: laws keep what they derive from the period.
   for (double& period : all) {
@@ -154,9 +151,15 @@ Samples check_series(std::span<const Series> recordings, const FoldOptions& opti
   if (!(options.test_share >= 0.0 && options.test_share <= 0.9)) {
     refuse("the share that is held back for a test must be from 0 to 0.9");
   }
-  Samples samples;
+  Samples samples{.least = infinite, .most = -infinite};
+  samples.all_seen = options.test_share == 0.0;
   for (const Series& series : recordings) {
-    samples.largest_force = std::max(samples.largest_force, check_columns(series));
+    const Ranges ranges = check_columns(series);
+    samples.largest_force = std::max(samples.largest_force, largest_of(ranges.force));
+    samples.fastest = std::max(samples.fastest, largest_of(ranges.velocity));
+    samples.least = std::min(samples.least, ranges.penetration.least);
+    samples.most = std::max(samples.most, ranges.penetration.most);
+    samples.all_seen = samples.all_seen && std::ranges::none_of(series.counts, [](auto c) { return c == 0; });
     const Run run{.begin = samples.size(),
                   .end = samples.size() + series.force.size(),
                   .noise_n = series.noise_n,
@@ -184,11 +187,6 @@ Samples check_series(std::span<const Series> recordings, const FoldOptions& opti
     assign_folds(samples, run, series.cycle, options);
     samples.runs.push_back(run);
   }
-  samples.least = samples.most = samples.motion.front().penetration;
-  for (const models::Motion& motion : samples.motion) {
-    samples.least = std::min(samples.least, motion.penetration);
-    samples.most = std::max(samples.most, motion.penetration);
-  }
   if (!(samples.most > samples.least))
     refuse("the position is constant, so no law over it can be told from another");
   return samples;
@@ -200,11 +198,13 @@ Samples thinned(const Samples& samples, std::size_t count) {
   Samples few{.folds = samples.folds,
               .least = samples.least,
               .most = samples.most,
+              .fastest = samples.fastest,
               .largest_force = samples.largest_force,
               .median_period_s = samples.median_period_s,
               .duration_s = samples.duration_s,
               .has_cycles = samples.has_cycles,
-              .is_even = samples.is_even};
+              .is_even = samples.is_even,
+              .all_seen = samples.all_seen};
   // Equal but for rounding is equal: laws keep what they derive from the period.
   const double usual_s = static_cast<double>(step) * samples.median_period_s;
   const auto since = [&](std::size_t before, std::size_t i) {
@@ -231,14 +231,23 @@ Samples thinned(const Samples& samples, std::size_t count) {
   return few;
 }
 
+Numbers seen_of(const Samples& samples, std::span<const double> column, std::vector<double>& kept) {
+  if (samples.all_seen) return numbers_of(column);
+  for (std::size_t i = 0; i < column.size(); ++i) {
+    if (samples.is_seen(i)) kept.push_back(column[i]);
+  }
+  return numbers_of(kept);
+}
+
 Weights all_of(const Samples& samples) {
   Weights weights(samples.size(), 1.0);
+  if (samples.all_seen && samples.runs.size() == 1) return weights;
   const bool known =
       std::all_of(samples.runs.begin(), samples.runs.end(), [](const Run& run) { return run.noise_n > 0.0; });
   for (const Run& run : samples.runs) {
     const double share = known ? samples.runs.front().noise_n / run.noise_n : 1.0;
     for (std::size_t i = run.begin; i < run.end; ++i) {
-      weights[i] = samples.fold[i] == Samples::test || samples.counts[i] == 0 ? 0.0 : share * share;
+      weights[i] = samples.is_seen(i) ? share * share : 0.0;
     }
   }
   return weights;

@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "kerf/fitting/fit.h"
 
 namespace kerf::fitting {
@@ -29,15 +31,19 @@ struct Samples {
   std::size_t folds = 0;
   double least = 0.0;          ///< smallest penetration
   double most = 0.0;           ///< largest penetration
+  double fastest = 0.0;        ///< largest velocity, either way
   double largest_force = 0.0;  ///< either way
   double median_period_s = 0.0;
   double duration_s = 0.0;  ///< of the longest run
   bool has_cycles = false;
-  bool is_even = true;  ///< one period throughout
+  bool is_even = true;   ///< one period throughout
+  bool all_seen = true;  ///< no row is left out or held back for a test
 
   static constexpr std::uint32_t no_fold = static_cast<std::uint32_t>(-1);
   static constexpr std::uint32_t test = static_cast<std::uint32_t>(-2);  ///< a fold that no fit sees
   [[nodiscard]] std::size_t size() const noexcept { return force.size(); }
+  /// Whether a fit may see that row.
+  [[nodiscard]] bool is_seen(std::size_t i) const { return counts[i] != 0 && fold[i] != test; }
 };
 
 struct FoldOptions {
@@ -51,6 +57,14 @@ struct FoldOptions {
 /// Every so many samples of each run, at least `count` of them in all, or all there are. A law that is exact
 /// for motion that is linear between samples sees nearly the same motion.
 [[nodiscard]] Samples thinned(const Samples& samples, std::size_t count);
+
+using Numbers = Eigen::Map<const Eigen::ArrayXd>;
+inline Numbers numbers_of(std::span<const double> values) {
+  return {values.data(), static_cast<Eigen::Index>(values.size())};
+}
+/// Of a column what a fit may see of it; `kept` takes the numbers where that is not all.
+[[nodiscard]] Numbers seen_of(const Samples& samples, std::span<const double> column,
+                              std::vector<double>& kept);
 
 /// How much each sample counts; 0: not at all.
 using Weights = std::vector<double>;

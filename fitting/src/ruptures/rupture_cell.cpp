@@ -15,6 +15,7 @@ RuptureParts::RuptureParts(const BreakingSamples& data, const RuptureRows& rows)
   element.own.assign(element.parameters.size(), false);
   samples.least = all.least;
   samples.most = all.most;
+  samples.fastest = all.fastest;
   samples.median_period_s = all.median_period_s;
   samples.duration_s = all.duration_s;
   const auto take = [&](std::size_t i, double reference, double weight) {

@@ -24,9 +24,7 @@ std::size_t enough_to_begin(const Samples& samples) {
   constexpr double fewest = 2000.0;
   constexpr double most = 200'000.0;
   constexpr double in_one_way = 10.0;
-  double fastest = 0.0;
-  for (const models::Motion& motion : samples.motion) fastest = std::max(fastest, std::abs(motion.velocity));
-  const double ways = fastest * samples.duration_s / std::max(samples.most - samples.least, 1e-12);
+  const double ways = samples.fastest * samples.duration_s / std::max(samples.most - samples.least, 1e-12);
   return static_cast<std::size_t>(std::clamp(in_one_way * ways, fewest, most));
 }
 
@@ -150,12 +148,8 @@ models::OptionValue taken_from(const Samples& samples, const models::DataOption&
       return samples.most;
     case models::From::depth:
       return std::max(samples.most, nothing);
-    case models::From::speed: {
-      double fastest = nothing;
-      for (const models::Motion& motion : samples.motion)
-        fastest = std::max(fastest, std::abs(motion.velocity));
-      return fastest;
-    }
+    case models::From::speed:
+      return std::max(samples.fastest, nothing);
     case models::From::contact:  // samples begin there; who has the axis gives its position
       break;
   }

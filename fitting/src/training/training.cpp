@@ -84,9 +84,9 @@ bool goes_on_from(const Values& whole, const Trained& law, const Samples& sample
 
 /// Of the samples those that all_of() gives a weight.
 std::size_t how_many_to_see(const Samples& samples) {
+  if (samples.all_seen) return samples.size();
   std::size_t count = 0;
-  for (std::size_t i = 0; i < samples.size(); ++i)
-    count += samples.counts[i] != 0 && samples.fold[i] != Samples::test ? 1 : 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) count += samples.is_seen(i) ? 1 : 0;
   return count;
 }
 
