@@ -26,11 +26,13 @@ RenderedSeries::RenderedSeries(const AxisSeries& series, double loop_rate_hz) {
   const double row_s = rows > 1 ? quantile(periods_of(series.time_s), 0.5) : 1.0 / loop_rate_hz;
   const double period_s = std::max(1.0 / loop_rate_hz, row_s / ticks_a_row);
   const double latency_s = 1.0 / loop_rate_hz;
+  const bool is_coarse = period_s > latency_s;
   const double longest_s = std::max(missing_s, missing_rows * row_s);
   drivers::VelocityFilter filter;
-  const double most = ticks_a_row * static_cast<double>(rows) + 1.0;  // of rows that are not far apart
+  const double most =
+      (ticks_a_row + 1.0) * static_cast<double>(rows) + 1.0;  // of rows that are not far apart
   const double usual = rows > 1 ? (series.time_s.back() - series.time_s.front()) / period_s + 2.0 : 1.0;
-  const auto ticks = static_cast<std::size_t>(std::min(most, usual));
+  const auto ticks = static_cast<std::size_t>(is_coarse ? most : std::min(most, usual));
   motion_.reserve(ticks);
   period_s_.reserve(ticks);
   tick_.reserve(rows);
@@ -55,8 +57,12 @@ RenderedSeries::RenderedSeries(const AxisSeries& series, double loop_rate_hz) {
     } else {
       const double before_s = series.time_s[row - 1];
       const double slope = (series.penetration[row] - series.penetration[row - 1]) / (now_s - before_s);
-      for (double next_s = last_s + period_s; next_s <= now_s + 1e-9; next_s = last_s + period_s)
+      const double until_s = is_coarse ? now_s - latency_s : now_s + 1e-9;
+      const auto at = [&](double next_s) {
         tick(next_s, series.penetration[row - 1] + slope * (next_s - before_s));
+      };
+      for (double next_s = last_s + period_s; next_s <= until_s; next_s = last_s + period_s) at(next_s);
+      if (is_coarse && until_s > last_s) at(until_s);
     }
     felt_at(now_s);
   }
