@@ -171,10 +171,7 @@ LawInGroup law_in_group(const StudyResults& results, const StudiedGroup& group, 
 
 /// In the order of `kerf laws`, so that of laws that serve alike the first there is taken, as by a fit.
 std::vector<std::string> as_listed(std::vector<std::string> models) {
-  const std::vector<models::LawInfo> all = models::registry();
-  std::ranges::stable_sort(models, {}, [&](const std::string& model) {
-    return std::ranges::find(all, model, &models::LawInfo::name) - all.begin();
-  });
+  std::ranges::stable_sort(models, {}, models::place_in_registry);
   return models;
 }
 
