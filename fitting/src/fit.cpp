@@ -25,7 +25,7 @@ struct RootMeanSquares {
   double seen = nothing, test = nothing;
 };
 RootMeanSquares rms_of(const std::vector<double>& residuals, const Samples& samples) {
-  const auto rms = [](Numbers numbers) {
+  const auto rms = [](const Numbers& numbers) {
     return numbers.size() > 0 ? std::sqrt(numbers.square().mean()) : nothing;
   };
   std::vector<double> kept;
@@ -208,6 +208,7 @@ FitResult fit_samples(std::string_view model, const Samples& samples, const FitO
   }
   result.converged = law.solution.converged;
   result.iterations = law.solution.iterations;
+  if (law.loss.kind != Loss::squares) result.loss_scale_n = law.loss.scale;
   tell_a_part(options);
   measure(result, law, samples, options);
   estimate_parameters(result, law.problem, samples, law.weights, law.solution, options, law.loss);

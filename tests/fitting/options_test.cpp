@@ -91,6 +91,16 @@ TEST(Loss, OfHuberIsNotMovedByHits) {
   }
 }
 
+TEST(Loss, SaysTheScaleThatItTook) {
+  const Strokes strokes(4000, 0.02, kelvin);
+  const auto scale_of = [&](const FitOptions& options) {
+    return fit("kelvin", strokes.series(), options).loss_scale_n;
+  };
+  EXPECT_NEAR(scale_of({.folds = 0, .loss = Loss::huber}), 1.345 * 0.02, 0.05 * 1.345 * 0.02);
+  EXPECT_EQ(scale_of({.folds = 0, .loss = Loss::huber, .loss_scale_n = 0.1}), 0.1);
+  EXPECT_EQ(scale_of({.folds = 0}), 0.0);
+}
+
 TEST(TestShare, IsSeenByNoFit) {
   Strokes strokes(8000, 0.0, kelvin);
   for (std::size_t i = 0; i < strokes.force.size(); ++i) {

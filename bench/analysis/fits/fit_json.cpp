@@ -152,6 +152,7 @@ json law_as_json(const FittedLaw& law, const RecordingFit& all) {
               {"warnings", fit.warnings}};
   if (all.floor && std::isfinite(fit.held_out_rmse())) result["error_parts"] = parts_as_json(fit, *all.floor);
   if (const std::string why = all.blame(law); !why.empty()) result["blame"] = why;
+  if (fit.loss_scale_n > 0.0) result["loss_scale"] = fit.loss_scale_n;
   if (!fit.profiles.empty()) result["profiles"] = profiles_as_json(fit);
   if (!fit.others.empty()) result["per_recording"] = own_as_json(law, all, interval);
   return result;

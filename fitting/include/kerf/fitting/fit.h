@@ -160,6 +160,7 @@ struct FitResult {
   double test_rmse = 0.0;         ///< on the share that no fit saw [N]; NaN if none
   double jnd_fraction = 0.0;      ///< share of samples whose error a person could feel
   double free_fraction = 0.0;     ///< share of the rows before the tissue whose error a person could feel
+  double loss_scale_n = 0.0;      ///< s of a robust loss, as it was taken [N]; 0 for squares
   double correlation_time = 1.0;  ///< of the residuals, in samples; the intervals allow for it
   CovarianceBy covariance_by = CovarianceBy::residuals;
   std::vector<double> correlation;    ///< matrix of the searched parameters, row by row; empty for tables
