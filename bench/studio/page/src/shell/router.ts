@@ -3,7 +3,7 @@ import { isSamePlace, readAddress, withState, writeAddress, type Address } from 
 /** "push": a step of its own, that "back" undoes; "replace": the same step, as while somebody drags. */
 export type Step = "push" | "replace";
 
-const rest_ms = 250; // browsers refuse more than some hundred changes of the address in 30 s
+const rest_ms = 250; // between two writes: browsers refuse more than some hundred changes of the address in 30 s
 
 /**
  * The page's place in the address bar. What changes by hand comes in by `set`, what changes by back, forward and links
@@ -13,6 +13,7 @@ export class Router {
   private current: Address;
   private written: string;
   private timer = 0;
+  private written_ms = -rest_ms;
   private readonly listeners = new Set<() => void>();
 
   constructor(private readonly moved: (now: Address) => void) {
@@ -44,8 +45,9 @@ export class Router {
     if (writeAddress(next) === writeAddress(this.current)) return;
     if (step === "push") this.flush();
     this.current = next;
-    if (step === "push") this.write("push");
-    else this.timer ||= window.setTimeout(() => this.flush(), rest_ms);
+    const wait_ms = this.written_ms + rest_ms - performance.now();
+    if (step === "push" || wait_ms <= 0) this.write(step);
+    else this.timer ||= window.setTimeout(() => this.flush(), wait_ms);
   }
 
   /** Told when back, forward or a link has changed the state of what is shown. */
@@ -62,6 +64,7 @@ export class Router {
   private write(step: Step): void {
     clearTimeout(this.timer);
     this.timer = 0;
+    this.written_ms = performance.now();
     this.written = writeAddress(this.current);
     if (step === "push") history.pushState(null, "", this.written);
     else history.replaceState(null, "", this.written);
