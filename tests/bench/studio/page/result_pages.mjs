@@ -119,6 +119,23 @@ async function testFits(page, studio) {
   return written;
 }
 
+/** Why a law with a small error is not chosen stands beside it. */
+async function testRemarks(page, studio) {
+  const file = join(studio.folder, "cut.fit/fit.json");
+  const written = await readFile(file, "utf8");
+  const changed = JSON.parse(written);
+  const law = changed.fits.find((it) => it.model !== changed.choice.model);
+  Object.assign(law, { converged: false, r2: -0.1, free_fraction: 0.8, undetermined_arms: 1 });
+  await writeFile(file, JSON.stringify(changed));
+  await page.reload();
+  const remark = page.locator("table.fits tbody tr", { hasText: law.model }).locator("td").last();
+  const all = "did not converge, worse than the mean, felt in free air, an arm not told";
+  await until(`${law.model} has its remarks`, async () => (await remark.textContent().catch(() => "")) === all);
+  await writeFile(file, written);
+  await page.reload();
+  await until("it has none", async () => (await remark.textContent().catch(() => "?")) === "");
+}
+
 /** The law that was fitted goes into the running loop by one press. */
 async function testFeeling(page) {
   const ask = (path) =>
@@ -288,6 +305,7 @@ export async function testResults(page, studio) {
   studio.kerf(["record", "--device", "sim:scissors", "--seconds", "6", "--virtual", "-o", "short.h5"]);
   studio.kerf(["segment", "short.h5"]);
   await testFits(page, studio);
+  await testRemarks(page, studio);
   await testFeeling(page);
   await testChart(page, studio);
   await testChoice(page, studio);

@@ -37,6 +37,8 @@ export interface LawFit {
   test_rmse_rendered?: number | null;
   blame?: string; // what is to blame for its error, where it is not within the JND
   jnd_fraction: number;
+  free_fraction?: number; // missing in files of earlier versions: of the rows before the tissue, those felt there
+  undetermined_arms?: number;
   correlation: { parameters: string[]; matrix: (number | null)[][] };
   converged: boolean;
   message: string;

@@ -24,6 +24,16 @@ export function choiceMark(file: FitFile): string {
   return within ? "simplest within the JND" : "as good as the best, not within the JND";
 }
 
+/** Why a law is not chosen, however small its error. */
+function againstIt(fit: LawFit): string[] {
+  return [
+    fit.converged ? "" : "did not converge",
+    fit.r2 < 0 ? "worse than the mean" : "",
+    (fit.free_fraction ?? 0) > 0.5 ? "felt in free air" : "",
+    (fit.undetermined_arms ?? 0) > 0 ? "an arm not told" : "",
+  ].filter(Boolean);
+}
+
 /** `file`: what the head is called in a file, with its unit. */
 function head(text: string, number = true, file = text): HTMLTableCellElement {
   return element("th", { scope: "col", "data-head": file, ...(number ? { class: "number" } : {}) }, text);
@@ -75,10 +85,8 @@ export class FitTable {
     const body = element("tbody");
     for (const fit of sorted) {
       const open = element("button", { type: "button", class: "link", click: () => choose(fit) }, fit.model);
-      const marks = [
-        fit.model === file.choice.model ? choiceMark(file) : "",
-        fit.converged ? "" : "did not converge",
-      ].filter(Boolean);
+      const chosen = fit.model === file.choice.model;
+      const marks = [chosen ? choiceMark(file) : "", ...againstIt(fit)].filter(Boolean);
       const box = element("input", {
         type: "checkbox",
         "aria-label": `Draw ${fit.model}`,
@@ -96,7 +104,7 @@ export class FitTable {
         numberCell(fit.bic.toFixed(0).replace("-", "−"), fit.bic),
         element("td", {}, marks.join(", ")),
       );
-      row.classList.toggle("taken", fit.model === file.choice.model);
+      row.classList.toggle("taken", chosen);
       this.rows.set(fit.model, row);
       body.append(row);
     }
