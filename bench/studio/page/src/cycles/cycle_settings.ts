@@ -4,7 +4,8 @@ import { element, labelled, select } from "../ui/dom";
 
 /** How cycles are found; each change is tried at once. */
 export class CycleSettings {
-  readonly root: HTMLElement;
+  readonly root: HTMLDetailsElement;
+  private readonly told = element("span", { class: "quiet" });
   private readonly slider: HTMLInputElement;
   private readonly fields: Record<"prominence" | "corner_hz" | "dwell", HTMLInputElement>;
   private readonly closing: HTMLSelectElement;
@@ -50,9 +51,9 @@ export class CycleSettings {
       tell,
     );
     this.root = element(
-      "fieldset",
+      "details",
       { class: "cycle_settings" },
-      element("legend", {}, "How cycles are found"),
+      element("summary", {}, "How cycles are found", this.told),
       element(
         "div",
         { class: "stroke" },
@@ -77,6 +78,12 @@ export class CycleSettings {
     this.fields.dwell.value = percent(settings.dwell);
     this.closing.value = settings.closing;
     this.axis.value = String(axis);
+    this.told.textContent = `: ${this.fields.prominence.value} %, ${settings.corner_hz} Hz`;
+  }
+
+  /** For cycles that are not as somebody wants them yet. */
+  unfold(): void {
+    this.root.open = true;
   }
 
   private tell(): void {

@@ -28,6 +28,7 @@ export class CyclesTab {
   private readonly fits: EarlierFits;
   private readonly observer: ResizeObserver;
   private held: Held | null = null;
+  private hasLooked = false; // at what the recording has
   private splits = false; // the next press on the plots splits a cycle
   private look: () => Promise<void> = () => Promise.resolve();
 
@@ -97,7 +98,7 @@ export class CyclesTab {
   }
 
   private lay(root: HTMLElement, plots: HTMLElement): void {
-    const main = element("div", { class: "cycle_main" }, this.bar.root, this.empty, plots, this.loop.root);
+    const main = element("div", { class: "cycle_main" }, this.empty, plots, this.loop.root);
     const worth = new InspectionPanel((from_s, to_s) => {
       const [from, to] = [Math.max(0, from_s - 1), to_s + 1];
       this.context.state.set({ [stateKeys.from]: from, [stateKeys.to]: to }, "push");
@@ -116,7 +117,7 @@ export class CyclesTab {
       element(
         "div",
         { class: "scrolling cycles_scroll" },
-        element("div", { class: "cycle_desk" }, main, side),
+        element("div", { class: "cycle_desk" }, this.bar.root, main, side),
         element("section", { "aria-label": "What it is worth" }, worth.root),
       ),
     );
@@ -197,6 +198,8 @@ export class CyclesTab {
     if (!view || !draft) return;
     const locked = view.locked !== "";
     const { about } = this.recording;
+    if (!this.hasLooked && (!view.stored || view.why_none !== "")) this.settings.unfold();
+    this.hasLooked = true;
     this.settings.show(draft.settings ?? view.settings, view.axis, locked);
     this.table.show(view, draft, loop, locked);
     this.table.offer(!locked && draft.phases.length > 0, this.splits, !locked && this.desk.canMerge);

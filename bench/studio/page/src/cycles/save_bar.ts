@@ -25,7 +25,8 @@ export class SaveBar {
     this.root = element(
       "div",
       { class: "save_bar" },
-      element("div", { class: "row" }, this.undo, this.redo, labelled("Edited by", this.author), this.save, this.words),
+      element("div", { class: "row" }, this.undo, this.redo, this.save, this.words),
+      labelled("Edited by", this.author),
       this.trouble,
     );
   }

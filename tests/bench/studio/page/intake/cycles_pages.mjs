@@ -141,6 +141,7 @@ export const tests = {
       if (settings && settings.prominence < 0.5) await new Promise((go) => setTimeout(go, 1500)); // a late answer
       await route.continue().catch(() => {});
     });
+    await page.getByText("How cycles are found").click();
     const stroke = page.getByLabel("A stroke covers [% of the range]");
     await stroke.fill("20");
     await until("it is asked for", () => asked > 0);
