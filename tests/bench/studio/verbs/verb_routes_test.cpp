@@ -1,7 +1,9 @@
 #include "verbs/verb_routes.h"
 
 #include <algorithm>
+#include <atomic>
 #include <memory>
+#include <optional>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -124,6 +126,34 @@ TEST_F(VerbRoutes, StopAVerbAtWork) {
   while (jobs_.list()[0]["share"] != 0.25) std::this_thread::yield();
   EXPECT_EQ(post("/api/jobs/stop", {{"job", job}}).status, 200);
   EXPECT_EQ(test::ended_job(jobs_, job)["state"], "stopped");
+}
+
+TEST_F(VerbRoutes, StopAVerbWhileADeviceIsBeingOpenedAndAFileRead) {
+  std::atomic<int> begun{0};
+  std::atomic<bool> go{false};
+  Routes routes;  // ends before what its threads look at
+  add_job_routes(routes, jobs_);
+  const auto waits = [&](const HttpRequest&) {
+    ++begun;
+    while (!go) std::this_thread::yield();
+    return HttpResponse{};
+  };
+  routes.get("/read", Routes::Pace::slow, waits);
+  routes.post("/open", Routes::Pace::action, waits);
+  const auto asker = std::make_shared<int>();
+  EXPECT_FALSE(routes.respond({.number = 1, .method = "GET", .path = "/read", .asker = asker}, false));
+  EXPECT_FALSE(routes.respond({.number = 2, .method = "POST", .path = "/open", .asker = asker}, false));
+  while (begun < 2) std::this_thread::yield();
+  const HttpRequest stop{.number = 3,
+                         .method = "POST",
+                         .path = "/api/jobs/stop",
+                         .headers = {{"content-type", "application/json"}},
+                         .body = R"({"job": 7})",
+                         .asker = asker};
+  std::optional<HttpResponse> stopped;
+  for (; !stopped; stopped = routes.respond(stop, false)) std::this_thread::yield();
+  go = true;
+  EXPECT_EQ(stopped->status, 200) << stopped->body;
 }
 
 TEST_F(VerbRoutes, RefuseBeforeThereIsAJob) {
