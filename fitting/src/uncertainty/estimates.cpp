@@ -338,7 +338,8 @@ class Estimation {
       std::erase(with.held, coordinate);
       known.limits = limits_of_zero(with, coordinate);
       if (std::isfinite(known.limits.upper))
-        warning = "'" + name + "' is zero, as far as the data tell: below " + number(known.limits.upper);
+        warning = "'" + name + "' is zero, as far as the data tell: below " + number(known.limits.upper) +
+                  "; the others' intervals are those of the law without it";
     }
     known_.of.push_back(coordinate);
     known_.known.push_back(known);
