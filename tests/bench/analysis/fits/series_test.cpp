@@ -110,6 +110,16 @@ TEST(RowDoubts, AskNobodyToTakeOutWhereTheMotionHasItsCorner) {
   EXPECT_THAT(doubts_of(series, {.folds = 0}), testing::ElementsAre(HasSubstr("one row stands out")));
 }
 
+TEST(RowDoubts, NameARowThatStandsOutWhereACoarseEncoderSteps) {
+  constexpr double step_m = 0.25e-3;  // of 20 mm
+  AxisSeries series = strokes_with([](double x, double) { return 200.0 * x; });
+  for (double& depth : series.penetration) depth = step_m * std::round(depth / step_m);
+  std::size_t row = 1200;
+  while (series.penetration[row] == series.penetration[row + 1]) ++row;
+  series.force[row] += 20.0;
+  EXPECT_THAT(doubts_of(series, {.folds = 0}), Contains(HasSubstr("most of all at 1.203 s by 20 N")));
+}
+
 /// Without the rows of some seconds, from the first in which the tool goes in past a place after a time.
 schema::Recording with_a_gap(schema::Recording recording, double after_s, double past, double gap_s) {
   std::size_t begin = 1;
