@@ -27,6 +27,7 @@ class AxisMotion {
   [[nodiscard]] double corner_hz() const noexcept { return corner_hz_; }
   [[nodiscard]] std::uint64_t rows() const noexcept { return smooth_position_.size(); }
   [[nodiscard]] double position(std::uint64_t row) const { return direction_ * smooth_position_[row]; }
+  [[nodiscard]] double recorded_position(std::uint64_t row) const { return direction_ * position_[row]; }
   [[nodiscard]] double force(std::uint64_t row) const { return smooth_force_[row]; }
 
  private:

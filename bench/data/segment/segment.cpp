@@ -44,8 +44,16 @@ struct FirstRows {
   [[nodiscard]] double operator[](std::size_t row) const { return values[row]; }
 };
 
-/// Standard deviation of what the low-pass leaves of the position's white noise; 0 where there is none.
-double noise_after(const AxisMotion& motion, const schema::RecordedRows& rows, std::size_t axis) {
+/// What the low-pass makes of the white noise of a position.
+struct PositionNoise {
+  double of_a_row = 0.0;    ///< standard deviation, 0 where there is none
+  double passed = 1.0;      ///< share of its variance that is left
+  std::uint64_t reach = 1;  ///< rows from a turn within which the low-pass moves it
+
+  [[nodiscard]] double after() const { return of_a_row * std::sqrt(passed); }
+};
+
+PositionNoise noise_of(const AxisMotion& motion, const schema::RecordedRows& rows, std::size_t axis) {
   const BlockedValues position = axis_values(rows, schema::Column::position, axis);
   const BlockedValues time_s = axis_values(rows, schema::Column::time);
   const std::uint64_t last = motion.rows() - 1;
@@ -55,10 +63,23 @@ double noise_after(const AxisMotion& motion, const schema::RecordedRows& rows, s
         position, [](std::size_t) { return true; }, look);
   };
   const double median = StreamedMedian::of(each);
-  if (!(median > 0.0) || !(seconds > 0.0)) return 0.0;
+  PositionNoise noise;
+  if (median > 0.0) noise.of_a_row = noise_of_second_differences(median);
+  if (!(seconds > 0.0) || !(motion.corner_hz() > 0.0)) return noise;
   const double rate_hz = static_cast<double>(last) / seconds;
-  const double passed = motion.corner_hz() > 0.0 ? std::min(1.0, 2.0 * motion.corner_hz() / rate_hz) : 1.0;
-  return noise_of_second_differences(median) * std::sqrt(passed);
+  noise.passed = std::min(1.0, 2.0 * motion.corner_hz() / rate_hz);
+  noise.reach = 1 + static_cast<std::uint64_t>(0.5 * rate_hz / motion.corner_hz());
+  return noise;
+}
+
+/// Where a turn from opening to closing stands: at the low-passed path's, but where it is a corner, which the
+/// low-pass cuts off, at the least row beside it. A row is that where noise would not be as far beyond.
+double open_end(const AxisMotion& motion, const Turn& turn, const PositionNoise& noise) {
+  const std::uint64_t begin = turn.row - std::min(turn.row, noise.reach);
+  const std::uint64_t end = std::min(motion.rows(), turn.row + noise.reach + 1);
+  double least = turn.position;
+  for (std::uint64_t row = begin; row < end; ++row) least = std::min(least, motion.recorded_position(row));
+  return turn.position - least > beyond_noise * noise.of_a_row ? least : turn.position;
 }
 
 /// Turning points whose prominence is at least `height`, alternately closed and open.
@@ -160,7 +181,8 @@ schema::Cycles find_cycles(const schema::RecordedRows& rows, const SegmentOption
   const double height = options.prominence * (most - least);
   // A filter leaves rounding on a constant, which turns often.
   const bool moves = most - least > 1e-9 * std::max(std::abs(most), std::abs(least));
-  if (const double noise = noise_after(motion, rows, options.axis); moves && height < beyond_noise * noise) {
+  const PositionNoise noise = noise_of(motion, rows, options.axis);
+  if (moves && height < beyond_noise * noise.after()) {
     throw std::invalid_argument(fmt::format(
         "no cycle of opening and closing: the position turns by no more than its noise does, {:.3g} "
         "{} in all",
@@ -185,14 +207,18 @@ schema::Cycles find_cycles(const schema::RecordedRows& rows, const SegmentOption
                     turns.size() < 2 ? 0 : turns.size() - 2, 100.0 * options.prominence));
   }
   std::vector<double> open;
+  std::vector<double> open_ends;
   std::vector<double> closed;
-  for (const Turn& turn : turns) (turn.closed ? closed : open).push_back(turn.position);
-  cycles.contact_position = cycles.closing_direction * median(open);
+  for (const Turn& turn : turns) {
+    (turn.closed ? closed : open).push_back(turn.position);
+    if (!turn.closed) open_ends.push_back(open_end(motion, turn, noise));
+  }
+  cycles.contact_position = cycles.closing_direction * median(open_ends);
+  const double begin = median(open);  // of the low-passed path, which the branches are of
   const double end = *std::max_element(closed.begin(), closed.end());
   for (std::size_t point = 0; point < options.points; ++point) {
     const double share = static_cast<double>(point) / static_cast<double>(options.points - 1);
-    cycles.grid.push_back(cycles.contact_position +
-                          share * (cycles.closing_direction * end - cycles.contact_position));
+    cycles.grid.push_back(cycles.closing_direction * (begin + share * (end - begin)));
   }
   if (cycles.closing_direction < 0.0) std::reverse(cycles.grid.begin(), cycles.grid.end());
   add_phases(cycles.phases, motion, turns, options.dwell);
