@@ -202,15 +202,37 @@ struct Gap {
   RowSpan blind;  ///< the rows after it in which the tissue may remember what is missing
 };
 
+constexpr double steps_of_gap = 20.0;
+
+/// Whether `row` and the one before are of a hold whose rows are written more and more sparsely: several rows
+/// on either side of the step follow each other as slowly, and the tool stands still all the while.
+bool is_sparse_hold(const AxisSeries& series, std::size_t row, double range) {
+  constexpr std::size_t several = 4;
+  constexpr double still = 0.01;  // of the range
+  const auto& time_s = series.time_s;
+  const double gap_s = time_s[row] - time_s[row - 1];
+  const auto holds = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (std::abs(series.penetration[i] - series.penetration[row]) > still * range) return false;
+      if (i > begin && steps_of_gap * (time_s[i] - time_s[i - 1]) < gap_s) return false;
+    }
+    return true;
+  };
+  return (row + several < time_s.size() && holds(row - 1, row + several + 1)) ||
+         (row > several && holds(row - several - 1, row + 1));
+}
+
 /// Tissue is taken to have forgotten where the tool is out of it, or nothing is felt.
 std::vector<Gap> gaps_of(const AxisSeries& series, double felt) {
-  constexpr double periods = 20.0;
+  if (series.time_s.empty()) return {};
   constexpr double least_s = 0.05;
   const double period_s = median_period(series.time_s);
+  const auto ends = std::ranges::minmax(series.penetration);
   std::vector<Gap> gaps;
   for (std::size_t i = 1; i < series.time_s.size(); ++i) {
     const double gap_s = series.time_s[i] - series.time_s[i - 1];
-    if (!(gap_s > std::max(least_s, periods * period_s))) continue;
+    if (!(gap_s > std::max(least_s, steps_of_gap * period_s))) continue;
+    if (is_sparse_hold(series, i, ends.max - ends.min)) continue;
     const std::size_t begin = std::max(i, gaps.empty() ? 0 : gaps.back().blind.end);
     std::size_t end = begin;
     while (end < series.force.size() && series.penetration[end] > 0.0 && std::abs(series.force[end]) > felt)
