@@ -11,6 +11,7 @@
 #include <fmt/core.h>
 
 #include "fits/fit_series.h"
+#include "fits/sensor_doubts.h"
 #include "signal/held_values.h"
 #include "signal/quantiles.h"
 #include "signal/row_noise.h"
@@ -81,14 +82,18 @@ class ForceOverDepth {
     for (const double upper : upper_) most_ = std::fmax(most_, upper);
     const double in = quantile_of(first_in, 0.5);
     const double out = quantile_of(first_out, 0.5);
-    const bool one_way = in * out > 0.0 && (in > 0.0 || pulling > 0.0);
-    if (one_way) at_first_ = std::abs(in) < std::abs(out) ? in : out;
+    const double lesser = std::abs(in) < std::abs(out) ? in : out;
+    const bool pulls = pulling > 0.0;  // mostly
+    is_bias_ = in * out > 0.0 && std::abs(in - out) < alike * std::abs(lesser) && (in > 0.0 || !pulls);
+    if (in * out > 0.0 && (in > 0.0 || pulls || is_bias_)) at_first_ = lesser;
   }
 
   [[nodiscard]] double most() const noexcept { return most_; }
   /// Where the tool was least engaged, whichever way it went; 0 where it went with and against the force, or
-  /// was pulled though it is pushed elsewhere.
+  /// was pulled though it is pushed elsewhere, unless that may be a bias.
   [[nodiscard]] double at_first() const noexcept { return at_first_; }
+  /// Whether that is nearly the same going in and out, as what a sensor shows that was not zeroed.
+  [[nodiscard]] bool may_be_bias() const noexcept { return is_bias_; }
   /// The share of the depth that the tool goes without a force; 0 where it hardly was there.
   [[nodiscard]] double onset(double felt) const {
     std::size_t known = 0;
@@ -118,12 +123,14 @@ class ForceOverDepth {
 
   static constexpr std::size_t bins = 50;
   static constexpr std::size_t looked_at = 50'000;
+  static constexpr double alike = 0.25;
 
   double deepest_;
   std::array<double, bins> first_{};  ///< the median of its size when the tool first went in
   std::array<double, bins> upper_{};  ///< the upper quartile of its size, going in; NaN of too few rows
   double most_ = 0.0;
   double at_first_ = 0.0;
+  bool is_bias_ = false;
 };
 
 /// A law of contact begins at penetration 0. Of a force that stiffens the beginning is not felt, and nothing
@@ -131,22 +138,27 @@ class ForceOverDepth {
 std::string begins_elsewhere(const AxisSeries& series, const fitting::FitOptions& settings) {
   constexpr double late = 0.15;
   constexpr double gentle = 0.1;
-  constexpr double preloaded = 0.2;
+  const ForceOverDepth force(series);
+  const double preloaded = force.may_be_bias() ? 0.05 : 0.2;
   constexpr double least_share = 0.02;
   const auto [smallest, largest] = std::ranges::minmax_element(series.force);
-  const ForceOverDepth force(series);
   if (*smallest == *largest || !(force.most() > 0.0)) return "";  // which no fit takes
   const std::string& unit = settings.force_unit;
   const char* const mend = "; --contact POSITION says where it begins, 'kerf prepare --onset' finds it";
   const double first = force.at_first();
   if (std::abs(first) > std::max(settings.jnd.threshold, preloaded * force.most())) {
-    const std::string turned =
-        fmt::format(": is its sign turned? --map 'force=COLUMN[-1 {}]' turns it", unit);
+    const std::string why =
+        force.may_be_bias()
+            ? fmt::format(
+                  ", the same going in and out, as of a sensor that was not zeroed ('kerf prepare "
+                  "--bias' takes that off where the tool is free){}",
+                  mend)
+        : first < 0.0 ? fmt::format(": is its sign turned? --map 'force=COLUMN[-1 {}]' turns it", unit)
+                      : mend;
     return fmt::format(
         "where the tool was least engaged, and penetration is 0, a force of {:.3g} {} {} already, of {:.3g} "
         "{} going in{}",
-        std::abs(first), unit, first < 0.0 ? "pulls" : "pushes", force.most(), unit,
-        first < 0.0 ? turned : mend);
+        std::abs(first), unit, first < 0.0 ? "pulls" : "pushes", force.most(), unit, why);
   }
   const double onset = force.onset(std::max(settings.jnd.threshold, least_share * force.most()));
   if (!(onset > late && force.at(onset + 0.25 * (1.0 - onset)) > gentle * force.most())) return "";
@@ -398,9 +410,10 @@ std::vector<std::string> doubts_of(const AxisSeries& series, const fitting::FitO
   if (of_the_force.empty()) of_the_force = nothing_changes(series, settings);
   if (of_the_force.empty()) of_the_force = helps_going_in(series, settings);
   if (of_the_force.empty()) of_the_force = begins_elsewhere(series, settings);
-  for (std::string& doubt : std::array{std::move(of_the_force), positions_that_jump(series),
-                                       gaps_in_time(series, settings.jnd.threshold), held_force(series),
-                                       single_rows(series, settings)}) {
+  for (std::string& doubt :
+       std::array{std::move(of_the_force), positions_that_jump(series), drifting_force(series, settings),
+                  clipped_force(series, settings), gaps_in_time(series, settings.jnd.threshold),
+                  held_force(series), single_rows(series, settings)}) {
     if (!doubt.empty()) doubts.push_back(std::move(doubt));
   }
   if (settings.folds >= 2 && !series.cycle.empty() && *std::ranges::max_element(series.cycle) == 1) {

@@ -32,9 +32,10 @@ CountedRows mark_rows(const FitSource& source, const RowChoice& choice, double f
 /// can be told by it. Else empty.
 [[nodiscard]] std::string nothing_felt(const AxisSeries& series, const fitting::FitOptions& settings);
 
-/// What the rows cannot say, whatever law is fitted to them, in a sentence each: a force that is not felt;
-/// one that does not change by what is felt; and where errors are held out, the next cycle, if there was only
-/// one.
+/// What the rows cannot say, whatever law is fitted to them, in a sentence each: a force that is not felt, or
+/// does not change by what is felt, helps the tool in, begins elsewhere or is biased; a sensor that drifts,
+/// is clipped or is held; rows that jump, are missing or stand out; and where errors are held out, the next
+/// cycle, if there was only one.
 [[nodiscard]] std::vector<std::string> doubts_of(const AxisSeries& series,
                                                  const fitting::FitOptions& settings);
 

@@ -58,7 +58,8 @@ void add_data_options(Verb& verb, FitArguments& arguments) {
       .within(AskedFit::rates_hz.lower, AskedFit::rates_hz.upper)
       .with_default();
   verb.add_option("--noise", arguments.noise,
-                  "Standard deviation of the force's noise, one or one a recording [N] (default: estimated)")
+                  "Standard deviation of the force's noise, one or, between commas, one a recording [N] "
+                  "(default: estimated)")
       .separated_by(',')
       .one_value_each()
       .positive();

@@ -1,6 +1,10 @@
 #include "inspect/clipping.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "inspect/signal_facts.h"
 
 namespace kerf::bench {
 namespace {
@@ -59,6 +63,18 @@ EndsOfRange ends_of_range(const BlockedValues& values, double least, double most
   judge(ends.least, ends.longest_between, position, position_noise);
   judge(ends.most, ends.longest_between, position, position_noise);
   return ends;
+}
+
+EndsOfRange ends_of_force(const BlockedValues& force, const BlockedValues& position) {
+  double least = std::numeric_limits<double>::infinity();
+  double most = -least;
+  for (std::size_t row = 0; row < force.size(); ++row) {
+    const double value = force[row];
+    if (!std::isfinite(value)) continue;
+    least = std::min(least, value);
+    most = std::max(most, value);
+  }
+  return ends_of_range(force, least, most, position, noise_of(position, quantum_of(position)).value_or(0.0));
 }
 
 }  // namespace kerf::bench

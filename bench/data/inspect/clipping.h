@@ -37,4 +37,7 @@ struct EndsOfRange {
 [[nodiscard]] EndsOfRange ends_of_range(const BlockedValues& values, double least, double most,
                                         const BlockedValues& position, double position_noise);
 
+/// Of a force, by the position of the tool beside it; values that are not finite end nowhere.
+[[nodiscard]] EndsOfRange ends_of_force(const BlockedValues& force, const BlockedValues& position);
+
 }  // namespace kerf::bench

@@ -22,18 +22,6 @@ using schema::Column;
 
 constexpr std::string_view accepted = "accepted";
 
-EndsOfRange ends_of_force(const BlockedValues& force, const BlockedValues& position) {
-  double least = std::numeric_limits<double>::infinity();
-  double most = -least;
-  for (std::size_t row = 0; row < force.size(); ++row) {
-    const double value = force[row];
-    if (!std::isfinite(value)) continue;
-    least = std::min(least, value);
-    most = std::max(most, value);
-  }
-  return ends_of_range(force, least, most, position, noise_of(position, quantum_of(position)).value_or(0.0));
-}
-
 std::vector<CycleVerdict> as_stored(const schema::Recording& about) {
   std::map<std::uint32_t, CycleVerdict> verdicts;
   for (const schema::PhaseSpan& phase : about.cycles->phases)
