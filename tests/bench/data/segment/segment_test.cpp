@@ -80,6 +80,31 @@ TEST(Segment, FindsEveryCycleWithItsFourPhasesInOrder) {
   }
 }
 
+// The low-pass cuts a corner off by 0.1 mm of 10; where the least row of each is, tissue begins.
+TEST(Segment, PutsTheContactWherePathsOfStraightLinesTurn) {
+  for (const double direction : {1.0, -1.0}) {
+    for (const double noise_m : {0.0, 1e-5}) {
+      schema::Recording recording;
+      recording.axes = {{.name = "x", .position_unit = "m"}};
+      std::mt19937_64 random(3);
+      std::normal_distribution<double> normal;
+      for (int row = 0; row < 5000; ++row) {
+        const double t = 0.002 * row;
+        const double depth = 0.01 * (1.0 - std::abs(2.0 * (t - std::floor(t)) - 1.0));
+        recording.time.push_back(t);
+        recording.position.push_back(direction * (0.03 + depth + noise_m * normal(random)));
+        recording.force_measured.push_back(200.0 * depth);
+      }
+      EXPECT_NEAR(find_cycles(recording, {}).contact_position, direction * 0.03, 2.0 * noise_m + 1e-9);
+    }
+  }
+}
+
+// The least of many noisy rows lies well below where a round turn does.
+TEST(Segment, PutsTheContactIntoTheMiddleOfTheNoiseOfARoundTurn) {
+  EXPECT_NEAR(find_cycles(Cutting{.noise = 0.02}.recording(), {}).contact_position, 0.0, 0.01);
+}
+
 TEST(Segment, TakesForClosingTheWayThatCostsMore) {
   const auto cycles = find_cycles(Cutting{.direction = -1.0}.recording(), {});
   EXPECT_EQ(cycles.closing_direction, -1.0);
