@@ -156,6 +156,27 @@ TEST(RowDoubts, LeaveOutWhatTissueRemembersOfAGap) {
   EXPECT_THAT(all.warnings, Contains(HasSubstr("errs for as long as it remembers")));
 }
 
+// Loggers of relaxations write ten rows a second, then one, then one a minute.
+TEST(RowDoubts, MissNoRowsInAHoldThatIsLoggedMoreAndMoreSparsely) {
+  AxisSeries series;
+  const auto log_until = [&](double end_s, double step_s) {
+    for (double t = series.time_s.empty() ? 0.0 : series.time_s.back() + step_s; t < end_s; t += step_s)
+      series.time_s.push_back(t);
+  };
+  log_until(2.0, 0.01);
+  log_until(10.0, 0.1);
+  log_until(100.0, 1.0);
+  for (const double t : series.time_s) {
+    series.penetration.push_back(0.01 * std::min(1.0, t));
+    series.velocity.push_back(t < 1.0 ? 0.01 : 0.0);
+  }
+  series.force = render(models::Law::make("kelvin", std::vector{200.0, 400.0, 2000.0}), series);
+  EXPECT_THAT(doubts_of(series, {.folds = 0}), testing::IsEmpty());
+  // A hold of even rows lacks those of two seconds.
+  for (std::size_t row = 150; row < series.time_s.size(); ++row) series.time_s[row] += 2.0;
+  EXPECT_THAT(doubts_of(series, {.folds = 0}), Contains(HasSubstr("rows are missing once, for 2.01 s")));
+}
+
 TEST(RenderedSeries, IsAPeriodLate) {
   AxisSeries series = series_of(2000, 1e-3);
   for (std::size_t i = 0; i < 2000; ++i)
