@@ -156,6 +156,44 @@ TEST(RowDoubts, LeaveOutWhatTissueRemembersOfAGap) {
   EXPECT_THAT(all.warnings, Contains(HasSubstr("errs for as long as it remembers")));
 }
 
+AxisSeries kelvin_strokes() {
+  AxisSeries series = strokes_with([](double, double) { return 0.0; });
+  series.force = render(models::Law::make("kelvin", std::vector{200.0, 400.0, 16.0}), series);
+  std::mt19937_64 random(4);
+  std::normal_distribution<double> noise(0.0, 0.02);
+  for (double& force : series.force) force += noise(random);
+  return series;
+}
+
+TEST(RowDoubts, NameASensorThatWasNotZeroed) {
+  EXPECT_THAT(doubts_of(kelvin_strokes(), {.folds = 0}), testing::IsEmpty());
+  for (const double bias : {0.5, -0.5}) {
+    AxisSeries series = kelvin_strokes();
+    for (double& force : series.force) force += bias;
+    EXPECT_THAT(doubts_of(series, {.folds = 0}),
+                testing::ElementsAre(AllOf(HasSubstr(bias > 0.0 ? " pushes already" : " pulls already"),
+                                           HasSubstr("as of a sensor that was not zeroed"))));
+  }
+}
+
+TEST(RowDoubts, NameASensorThatDrifts) {
+  AxisSeries series = kelvin_strokes();
+  for (std::size_t i = 0; i < series.force.size(); ++i) series.force[i] -= 0.08 * (series.time_s[i] - 4.0);
+  EXPECT_THAT(doubts_of(series, {.folds = 0}),
+              testing::ElementsAre(HasSubstr("the force went by -0.64 N from the first row to the last")));
+}
+
+TEST(RowDoubts, NameASensorThatIsClipped) {
+  AxisSeries series = kelvin_strokes();
+  for (double& force : series.force) force = std::min(force, 3.5);
+  EXPECT_THAT(doubts_of(series, {.folds = 0}),
+              testing::ElementsAre(
+                  AllOf(HasSubstr("the force stands at 3.5 N in "), HasSubstr("its sensor is clipped"))));
+  series.counts.assign(series.force.size(), 1);
+  for (std::size_t i = 0; i < series.force.size(); ++i) series.counts[i] = series.force[i] < 3.5 ? 1 : 0;
+  EXPECT_THAT(doubts_of(series, {.folds = 0}), testing::IsEmpty()) << "of rows that do not count";
+}
+
 // Loggers of relaxations write ten rows a second, then one, then one a minute.
 TEST(RowDoubts, MissNoRowsInAHoldThatIsLoggedMoreAndMoreSparsely) {
   AxisSeries series;
