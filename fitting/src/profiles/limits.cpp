@@ -1,6 +1,7 @@
 #include "profiles/limits.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -357,8 +358,9 @@ std::vector<Limits> limits_of(const Problem& problem, const LawObjective& object
   return all;
 }
 
-Limits limits_above_zero(const Problem& problem, const LawObjective& objective, const Eigen::VectorXd& at,
-                         Index held, const Sums& sums, const Uncertainty& uncertainty) {
+AboveZero limits_above_zero(const Problem& problem, const LawObjective& objective, const Eigen::VectorXd& at,
+                            Index held, const Sums& sums, const Uncertainty& uncertainty) {
+  constexpr std::array shares{0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 1.0};
   const Bounds bounds = problem.bounds();
   const auto place = static_cast<std::size_t>(held);
   const models::ParameterInfo& info = problem.parameters[problem.all()[place].parameter];
@@ -367,10 +369,20 @@ Limits limits_above_zero(const Problem& problem, const LawObjective& objective, 
   Ridge ridge(objective, bounds, at, held, sums.squares, unit, elsewhere);
   const double step = info.scale == models::Scale::logarithmic ? 1.0 : 1e-6 * info.upper;
   const Bounds ends = ends_of(problem);
-  const auto upper =
-      where_it_reaches(ridge, at[held], step, bounds.upper[held], ends, uncertainty.quantile[place]);
+  const double quantile = uncertainty.quantile[place];
+  const auto upper = where_it_reaches(ridge, at[held], step, bounds.upper[held], ends, quantile);
   if (!upper || ridge.came_to_an_end(ends)) return {};
-  return {.lower = 0.0, .upper = from_search_scale(info, *upper), .by = IntervalBy::profile, .p_zero = 0.5};
+  const double limit = from_search_scale(info, *upper);
+  AboveZero above{.limits = {.lower = 0.0, .upper = limit, .by = IntervalBy::profile, .p_zero = 0.5},
+                  .beside = {}};
+  ridge.begin_anew();
+  for (const double share : shares) {
+    const double deviation = ridge.deviation(to_search_scale(info, share * limit));
+    ridge.keep();
+    const double of_limit = std::min(1.0, deviation / quantile);
+    above.beside.push_back({.others = ridge.last(), .left = std::sqrt(1.0 - of_limit * of_limit)});
+  }
+  return above;
 }
 
 }  // namespace kerf::fitting

@@ -65,9 +65,20 @@ void take_curvature(Uncertainty& uncertainty, const Sums& sums, const Eigen::Mat
     const Eigen::MatrixXd& hessian, const Uncertainty& uncertainty, const std::vector<double>& scale,
     std::size_t threads = 1, const std::function<std::unique_ptr<const Objective>()>& cheaper = {});
 
-/// The limit of a coordinate that lies at its lower bound, which stands for none.
-[[nodiscard]] Limits limits_above_zero(const Problem& problem, const LawObjective& objective,
-                                       const Eigen::VectorXd& at, Eigen::Index held, const Sums& sums,
-                                       const Uncertainty& uncertainty);
+/// Where the others are at their best while one is held away from its bound.
+struct BestBeside {
+  Eigen::VectorXd others;
+  double left = 0.0;  ///< how far these may go from there, of how far they may while that one is at its bound
+};
+
+/// What is known of a coordinate that lies at its lower bound, which stands for none.
+struct AboveZero {
+  Limits limits;
+  std::vector<BestBeside> beside;  ///< from near the bound to the limit; none where there is no limit
+};
+
+[[nodiscard]] AboveZero limits_above_zero(const Problem& problem, const LawObjective& objective,
+                                          const Eigen::VectorXd& at, Eigen::Index held, const Sums& sums,
+                                          const Uncertainty& uncertainty);
 
 }  // namespace kerf::fitting

@@ -96,6 +96,8 @@ class Ridge {
     rest_ = last_;
     value_ = last_value_;
   }
+  /// The others, where the last search ended.
+  [[nodiscard]] const Eigen::VectorXd& last() const noexcept { return last_; }
   /// Whether another objective has the same least sum of squares near where the last search ended.
   [[nodiscard]] bool is_so_by(const Objective& other) const {
     constexpr double negligible = 1e-2;  // of the rise in one standard error

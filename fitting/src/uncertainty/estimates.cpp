@@ -128,11 +128,14 @@ class Estimation {
         loss_(loss) {}
 
   void run() {
-    // What lies at the end of its range is held there: the others' intervals are those of the law without it.
+    // What lies at the end of its range is held there, until the others' intervals are known; where that is
+    // none, they are widened by what they are beside a little of it.
     Problem inner(problem_);
     std::vector<Problem::Coordinate> at_bounds;
     for (const auto& coordinate : problem_.all()) {
-      if (!at_bound(problem_.parameters[coordinate.parameter], value_of(coordinate))) continue;
+      if (!at_bound(problem_.parameters[coordinate.parameter], value_of(coordinate)) &&
+          !is_nothing(coordinate))
+        continue;
       if (coordinate.run == Estimate::shared) {
         inner.free[coordinate.parameter] = false;
       } else {
@@ -154,8 +157,34 @@ class Estimation {
   }
 
  private:
+  /// Whether a parameter on a logarithmic scale is so small that the search had no reason to go on to its
+  /// bound: the sum of squares is the same without it. It sleeps where others are looked for along a ridge.
+  [[nodiscard]] bool is_nothing(const Problem::Coordinate& coordinate) const {
+    constexpr double small = 1e6;        // times the lower bound; larger ones are not asked
+    constexpr double negligible = 1e-3;  // of the variance of a residual
+    const models::ParameterInfo& info = problem_.parameters[coordinate.parameter];
+    if (info.scale != models::Scale::logarithmic || !may_be_zero(info) ||
+        value_of(coordinate) > small * info.lower || problem_.facts().search != models::Search::descent)
+      return false;
+    Values without(solution_.values);
+    for (std::size_t run = 0; run < without.size(); ++run) {
+      if (coordinate.run == Estimate::shared || coordinate.run == run)
+        without[run][coordinate.parameter] = info.lower;
+    }
+    Sums with_it;
+    Sums none;
+    return LawObjective(problem_, samples_, weights_, solution_.values, loss_)
+               .evaluate(coordinates_of(problem_, solution_.values), with_it) &&
+           LawObjective(problem_, samples_, weights_, without, loss_)
+               .evaluate(coordinates_of(problem_, without), none) &&
+           std::abs(none.squares - with_it.squares) <=
+               negligible * with_it.squares / static_cast<double>(samples_.size());
+  }
   [[nodiscard]] double value_of(const Problem::Coordinate& c) const {
     return solution_.values[c.run == Estimate::shared ? 0 : c.run][c.parameter];
+  }
+  [[nodiscard]] Known* known_of(const Problem::Coordinate& c) {
+    return known_.find(c.parameter, c.run == Estimate::shared ? 0 : c.run);
   }
   [[nodiscard]] std::string name_of(const Problem::Coordinate& c) const {
     const std::string& name = problem_.parameters[c.parameter].name;
@@ -339,13 +368,14 @@ class Estimation {
       known.limits = limits_of_zero(with, coordinate);
       if (std::isfinite(known.limits.upper))
         warning = "'" + name + "' is zero, as far as the data tell: below " + number(known.limits.upper) +
-                  "; the others' intervals are those of the law without it";
+                  "; the others' intervals allow for it";
     }
     known_.of.push_back(coordinate);
     known_.known.push_back(known);
     unknowns_.push_back({{name}, std::move(warning)});
   }
 
+  /// Widens the others' intervals by what is not known of it.
   [[nodiscard]] Limits limits_of_zero(const Problem& with, const Problem::Coordinate& coordinate) {
     const LawObjective objective(with, samples_, weights_, solution_.values, loss_);
     const Eigen::VectorXd at = coordinates_of(with, solution_.values);
@@ -357,26 +387,77 @@ class Estimation {
     if (!objective.evaluate(at, sums)) return {};
     const Uncertainty uncertainty =
         uncertainty_of(linearise(objective, with, solution_, samples_, weights_, loss_), options_.confidence);
-    forget_what_hangs_on(coordinate, all, uncertainty);
-    return limits_above_zero(with, objective, at, held - all.begin(), sums, uncertainty);
+    const AboveZero above = limits_above_zero(with, objective, at, held - all.begin(), sums, uncertainty);
+    for (Eigen::Index k = 0; k < at.size(); ++k) {
+      const Problem::Coordinate& other = all[static_cast<std::size_t>(k)];
+      Known* const known = known_of(other);
+      if (known == nullptr || other == coordinate || !std::isfinite(known->std_error)) continue;
+      const double beside = uncertainty.determined[static_cast<std::size_t>(k)]
+                                ? std::sqrt(uncertainty.covariance(k, k))
+                                : infinite;
+      if (hangs_on(at[k], *known, beside, above.beside, k < held - all.begin() ? k : k - 1))
+        forget(*known, other, coordinate);
+      else
+        widen(*known, other, above.beside, k < held - all.begin() ? k : k - 1);
+    }
+    return above.limits;
   }
 
-  /// What the data tell only as long as a parameter is zero, such as the exponent of an amplitude that is
-  /// none, they do not tell. @param free how well all are known where that one is searched
-  void forget_what_hangs_on(const Problem::Coordinate& zero, const std::vector<Problem::Coordinate>& all,
-                            const Uncertainty& free) {
-    constexpr double much = 10.0;  // more, in standard errors, than two that merely share what they explain
-    for (std::size_t k = 0; k < all.size(); ++k) {
-      Known* const known = known_.find(all[k].parameter, all[k].run == Estimate::shared ? 0 : all[k].run);
-      if (known == nullptr || !std::isfinite(known->std_error) || all[k] == zero) continue;
-      const auto diagonal = static_cast<Eigen::Index>(k);
-      if (free.determined[k] && std::sqrt(free.covariance(diagonal, diagonal)) <= much * known->std_error)
-        continue;
-      *known = {.std_error = infinite, .limits = {}};
-      const std::string name = name_of(all[k]);
-      std::string warning = "'" + name + "' is told only as long as '" + name_of(zero) + "' is zero";
-      unknowns_.push_back({{name}, std::move(warning)});
+  /// Takes into an interval what it is beside each value of another parameter that lies at zero, up to the
+  /// limit of that: the interval by the profile that has both free, if the parameter is known as well beside
+  /// one value as beside another.
+  void widen(Known& known, const Problem::Coordinate& coordinate, const std::vector<BestBeside>& beside,
+             Eigen::Index place) {
+    const models::ParameterInfo& info = problem_.parameters[coordinate.parameter];
+    const double best = to_search_scale(info, value_of(coordinate));
+    const Limits& alone = known.limits;
+    const double down = std::isfinite(alone.lower) ? best - to_search_scale(info, alone.lower) : infinite;
+    const double up = std::isfinite(alone.upper) ? to_search_scale(info, alone.upper) - best : infinite;
+    double least = best - down;
+    double most = best + up;
+    for (const BestBeside& one : beside) {
+      least = std::min(least, one.others[place] - one.left * down);
+      most = std::max(most, one.others[place] + one.left * up);
     }
+    known.std_error *= down + up > 0.0 && std::isfinite(down + up) ? (most - least) / (down + up) : 1.0;
+    if (least < best - down) {
+      const double end = may_be_zero(info) ? 0.0 : -infinite;
+      known.limits.lower = least > to_search_scale(info, info.lower) ? from_search_scale(info, least) : end;
+    }
+    if (most > best + up)
+      known.limits.upper =
+          most < to_search_scale(info, info.upper) ? from_search_scale(info, most) : infinite;
+    known.limits.by = IntervalBy::profile;
+    if (known.limits.lower == 0.0 && std::isinf(known.limits.upper)) known.limits = {};  // which is nothing
+    if (std::isfinite(known.limits.lower) && std::isfinite(known.limits.upper)) return;
+    const std::string name = name_of(coordinate);
+    const auto said = std::ranges::find_if(unknowns_, [&](const Unknown& unknown) {
+      return std::ranges::find(unknown.names, name) != unknown.names.end();
+    });
+    if (said == unknowns_.end())
+      unknowns_.push_back({{name}, hardly_known(name, known.limits)});
+    else if (said->names.size() == 1)
+      said->warning = hardly_known(name, known.limits);
+  }
+
+  /// Whether the data tell a parameter only as long as another one is zero, as they do the exponent of an
+  /// amplitude that is none: its standard error is far larger with that one free, and beside what that may be
+  /// it is another one altogether. @param with_it its standard error where that one is searched
+  [[nodiscard]] static bool hangs_on(double best, const Known& known, double with_it,
+                                     const std::vector<BestBeside>& beside, Eigen::Index place) {
+    constexpr double much = 10.0;  // more, in standard errors, than two that merely share what they explain
+    constexpr double far = 0.7;    // on the search scale: twice as large, or half
+    if (with_it <= much * known.std_error) return false;
+    return beside.empty() || std::ranges::any_of(beside, [&](const BestBeside& one) {
+             return !(std::abs(one.others[place] - best) <= far);
+           });
+  }
+
+  void forget(Known& known, const Problem::Coordinate& other, const Problem::Coordinate& zero) {
+    known = {.std_error = infinite, .limits = {}};
+    const std::string name = name_of(other);
+    std::string warning = "'" + name + "' is told only as long as '" + name_of(zero) + "' is zero";
+    unknowns_.push_back({{name}, std::move(warning)});
   }
 
   /// An arm of which little is known, and that is as well left away, is named as a whole.
