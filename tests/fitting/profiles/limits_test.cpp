@@ -91,6 +91,46 @@ TEST(Limits, OfASpringThatIsNotThereBeginAtZero) {
   EXPECT_GE(included, 17) << "one-sided, 97.5 % of them: fewer once in 3,000 times";
 }
 
+// In a short hold a slow arm and the spring beside it share what they explain: where the spring is found at
+// zero the arm has to answer for it, and the intervals of the law without the spring lie beside the truth.
+TEST(Limits, BesideWhatLiesAtZeroAllowForIt) {
+  const std::vector<double> truth{50.0, 200.0, 200.0, 1.0, 40.0};
+  const models::Options two{{"arms", 2.0}};
+  const models::Law tissue = models::Law::make("maxwell", truth, two);
+  std::vector<double> time_s, penetration, velocity;
+  for (int i = 0; i < 1700; ++i) {
+    time_s.push_back(0.005 * i);
+    penetration.push_back(0.01 * std::min(1.0, time_s.back() / 0.5));
+    velocity.push_back(time_s.back() < 0.5 ? 0.02 : 0.0);
+  }
+  test::Path path;
+  for (std::size_t i = 0; i < time_s.size(); ++i)
+    path.push_back({.penetration = penetration[i], .velocity = velocity[i]});
+  const std::vector<double> exact = tissue.along(path, std::vector<double>(path.size(), 0.005));
+  int at_zero = 0;
+  int held = 0;
+  for (std::uint64_t seed = 1; seed <= 24; ++seed) {
+    const Eigen::VectorXd noise =
+        test::Noise::white().draw(static_cast<Eigen::Index>(exact.size()), 0.01, seed);
+    std::vector<double> force(exact);
+    for (std::size_t i = 0; i < force.size(); ++i) force[i] += noise[static_cast<Eigen::Index>(i)];
+    const Series series{
+        .time_s = time_s, .penetration = penetration, .velocity = velocity, .force = force, .cycle = {}};
+    const FitResult result = fit("maxwell", std::vector{series}, {.law_options = two, .folds = 0});
+    if (estimate_of(result, "parallel_stiffness").value > 1e-6) continue;
+    ++at_zero;
+    EXPECT_GE(estimate_of(result, "parallel_stiffness").upper, truth[0]);
+    const Estimate& slow = estimate_of(result, "stiffness[1]");
+    const Estimate& slow_time = estimate_of(result, "relaxation_time[1]");
+    held += slow.lower <= truth[2] && truth[2] <= slow.upper && slow_time.lower <= truth[4] &&
+                    truth[4] <= slow_time.upper
+                ? 1
+                : 0;
+  }
+  ASSERT_GE(at_zero, 4);
+  EXPECT_EQ(held, at_zero);
+}
+
 // Without friction its presliding means nothing, and is fitted to the noise as well: that makes up for more
 // than the noise of one number.
 TEST(Limits, OfFrictionThatIsNotThereBeginAtZero) {
