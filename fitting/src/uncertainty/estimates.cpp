@@ -132,23 +132,30 @@ class Estimation {
     // none, they are widened by what they are beside a little of it.
     Problem inner(problem_);
     std::vector<Problem::Coordinate> at_bounds;
-    for (const auto& coordinate : problem_.all()) {
-      if (!at_bound(problem_.parameters[coordinate.parameter], value_of(coordinate)) &&
-          !is_nothing(coordinate))
-        continue;
+    std::vector<Problem::Coordinate> asleep;
+    const auto hold = [&inner](const Problem::Coordinate& coordinate) {
       if (coordinate.run == Estimate::shared) {
         inner.free[coordinate.parameter] = false;
       } else {
         inner.held.push_back(coordinate);  // that of one recording: the others' are searched
       }
-      at_bounds.push_back(coordinate);
+    };
+    for (const auto& coordinate : problem_.all()) {
+      if (at_bound(problem_.parameters[coordinate.parameter], value_of(coordinate)))
+        at_bounds.push_back(coordinate);
+      else if (is_nothing(coordinate))
+        asleep.push_back(coordinate);
     }
+    std::ranges::for_each(at_bounds, hold);
+    const Problem awake(inner);  // where those at their bounds are looked at
+    std::ranges::for_each(asleep, hold);
     if (inner.facts().search == models::Search::ruptures) {
       estimate_between_ruptures(inner);
     } else if (inner.coordinates() > 0) {
       estimate_within(inner);
     }
-    for (const auto& coordinate : at_bounds) estimate_at_bound(inner, coordinate);
+    for (const auto& coordinate : at_bounds) estimate_at_bound(awake, coordinate);
+    for (const auto& coordinate : asleep) estimate_at_bound(inner, coordinate);
     name_arms();
     for (Unknown& unknown : unknowns_) result_.warnings.push_back(std::move(unknown.warning));
     write();
