@@ -63,6 +63,7 @@ AxisMotion::AxisMotion(const schema::RecordedRows& rows, std::size_t axis, doubl
       force_(axis_values(rows, force_column(rows), axis)),
       grid_(times_of_finite_rows(rows, time_s_, position_, force_)),
       corner_hz_(std::min(corner_hz, 0.2 * grid_.rate_hz())),
+      is_measured_(force_column(rows) == schema::Column::force_measured),
       smooth_position_(position_, grid_, corner_hz_),
       smooth_force_(force_, grid_, corner_hz_) {}
 

@@ -28,7 +28,9 @@ class AxisMotion {
   [[nodiscard]] std::uint64_t rows() const noexcept { return smooth_position_.size(); }
   [[nodiscard]] double position(std::uint64_t row) const { return direction_ * smooth_position_[row]; }
   [[nodiscard]] double recorded_position(std::uint64_t row) const { return direction_ * position_[row]; }
+  /// Of a sensor as it resists, else the commanded one along the axis.
   [[nodiscard]] double force(std::uint64_t row) const { return smooth_force_[row]; }
+  [[nodiscard]] bool has_measured_force() const noexcept { return is_measured_; }
 
  private:
   BlockedValues time_s_;
@@ -36,6 +38,7 @@ class AxisMotion {
   BlockedValues force_;
   UniformTimes grid_;
   double corner_hz_;
+  bool is_measured_;
   SmoothedValues smooth_position_;
   SmoothedValues smooth_force_;
   double direction_ = 1.0;

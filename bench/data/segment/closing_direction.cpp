@@ -74,9 +74,19 @@ double strength_over_position(const AxisMotion& motion) {
   return product - position * strength;
 }
 
+/// Work of the force along the whole way, as if every step went up.
+double force_over_way(const AxisMotion& motion) {
+  double sum = 0.0;
+  for (std::uint64_t row = 1; row < motion.rows(); ++row)
+    sum += motion.force(row) * std::abs(motion.position(row) - motion.position(row - 1));
+  return sum;
+}
+
 }  // namespace
 
 double direction_of_closing(const AxisMotion& motion, const std::vector<Turn>& turns) {
+  // A command has the sign of the axis, and pushes out of the tissue: so much less do strokes along it cost.
+  if (!motion.has_measured_force()) return force_over_way(motion) <= 0.0 ? 1.0 : -1.0;
   const double told =
       differ_by_direction(motion, turns) ? work_of_rising(motion, turns) : strength_over_position(motion);
   return told >= 0.0 ? 1.0 : -1.0;

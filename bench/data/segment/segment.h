@@ -29,8 +29,8 @@ struct SegmentOptions {
 /// opening to closing before it, the closing, the turn from closing to opening, the opening, as far as they
 /// were recorded. Turning round is what happens within a share of the stroke from its ends. Closing is the
 /// direction that costs more work, unless it is given; where strokes either way differ by no more than they
-/// do among each other, that into which the force grows. Forces are low-passed and averaged over the cycles
-/// on a uniform grid of positions, NaN where a cycle did not reach.
+/// do among each other, that into which the force grows; of a commanded force, that against it. Forces are
+/// low-passed and averaged over the cycles on a uniform grid of positions, NaN where a cycle did not reach.
 ///
 /// Needs no more memory for a day than for a second, but for the cycles themselves: position and force are
 /// low-passed block by block, and gone through again for their range, the turns, the work of the strokes and

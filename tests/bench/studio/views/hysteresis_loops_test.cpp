@@ -102,11 +102,12 @@ TEST(ForceLoops, OfACommandResist) {
   EXPECT_NEAR(cycles.closing[50], 2.0, 1e-3);
   schema::Recording growing = cutting(5.0, false);
   for (double& position : growing.position) position = -position;
+  for (double& force : growing.force_commanded) force = -force;  // which still opens
   const SavedRecording other(growing);
   const schema::RecordingFile mirrored(other.path());
   cycles = axis_cycles(mirrored, 1);
   EXPECT_EQ(cycles.contact.direction, 1.0);
-  EXPECT_THAT(force_loops(mirrored, 1, cycles, 1, 1).front().force, testing::Contains(-2.0));
+  EXPECT_THAT(force_loops(mirrored, 1, cycles, 1, 1).front().force, testing::Contains(2.0));
 }
 
 TEST(ForceLoops, SayWhyThereAreNone) {
