@@ -84,16 +84,19 @@ class ForceOverDepth {
     const double out = quantile_of(first_out, 0.5);
     const double lesser = std::abs(in) < std::abs(out) ? in : out;
     const bool pulls = pulling > 0.0;  // mostly
-    is_bias_ = in * out > 0.0 && std::abs(in - out) < alike * std::abs(lesser) && (in > 0.0 || !pulls);
-    if (in * out > 0.0 && (in > 0.0 || pulls || is_bias_)) at_first_ = lesser;
+    const bool same = in * out > 0.0 && std::abs(in - out) < alike * std::abs(lesser);
+    is_bias_ = same && (in > 0.0 || !pulls) && std::abs(lesser) < most_bias * most_;
+    rests_within_ = in < 0.0 && out < 0.0 && !pulls && !is_bias_;
+    if (in * out > 0.0) at_first_ = lesser;
   }
 
   [[nodiscard]] double most() const noexcept { return most_; }
-  /// Where the tool was least engaged, whichever way it went; 0 where it went with and against the force, or
-  /// was pulled though it is pushed elsewhere, unless that may be a bias.
+  /// Where the tool was least engaged, whichever way it went; 0 where it went with and against the force.
   [[nodiscard]] double at_first() const noexcept { return at_first_; }
   /// Whether that is nearly the same going in and out, as what a sensor shows that was not zeroed.
   [[nodiscard]] bool may_be_bias() const noexcept { return is_bias_; }
+  /// Whether it pulls there both ways and pushes elsewhere, as what is held and moved to both sides.
+  [[nodiscard]] bool may_rest_within() const noexcept { return rests_within_; }
   /// The share of the depth that the tool goes without a force; 0 where it hardly was there.
   [[nodiscard]] double onset(double felt) const {
     std::size_t known = 0;
@@ -124,6 +127,7 @@ class ForceOverDepth {
   static constexpr std::size_t bins = 50;
   static constexpr std::size_t looked_at = 50'000;
   static constexpr double alike = 0.25;
+  static constexpr double most_bias = 0.5;  // of the largest force
 
   double deepest_;
   std::array<double, bins> first_{};  ///< the median of its size when the tool first went in
@@ -131,6 +135,7 @@ class ForceOverDepth {
   double most_ = 0.0;
   double at_first_ = 0.0;
   bool is_bias_ = false;
+  bool rests_within_ = false;
 };
 
 /// A law of contact begins at penetration 0. Of a force that stiffens the beginning is not felt, and nothing
@@ -147,14 +152,20 @@ std::string begins_elsewhere(const AxisSeries& series, const fitting::FitOptions
   const char* const mend = "; --contact POSITION says where it begins, 'kerf prepare --onset' finds it";
   const double first = force.at_first();
   if (std::abs(first) > std::max(settings.jnd.threshold, preloaded * force.most())) {
-    const std::string why =
-        force.may_be_bias()
-            ? fmt::format(
-                  ", the same going in and out, as of a sensor that was not zeroed ('kerf prepare "
-                  "--bias' takes that off where the tool is free){}",
-                  mend)
-        : first < 0.0 ? fmt::format(": is its sign turned? --map 'force=COLUMN[-1 {}]' turns it", unit)
-                      : mend;
+    std::string why = mend;
+    if (force.may_be_bias()) {
+      why = fmt::format(
+          ", the same going in and out, as of a sensor that was not zeroed ('kerf prepare --bias' takes that "
+          "off "
+          "where the tool is free){}",
+          mend);
+    } else if (force.may_rest_within()) {
+      why =
+          ": is the tissue held, and moved to both sides of where it rests? --contact POSITION says where "
+          "that is, and --option bilateral=true lets laws pull";
+    } else if (first < 0.0) {
+      why = fmt::format(": is its sign turned? --map 'force=COLUMN[-1 {}]' turns it", unit);
+    }
     return fmt::format(
         "where the tool was least engaged, and penetration is 0, a force of {:.3g} {} {} already, of {:.3g} "
         "{} going in{}",
