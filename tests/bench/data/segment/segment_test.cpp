@@ -128,6 +128,22 @@ TEST(Segment, OfASpringTakesForClosingTheWayIntoIt) {
   }
 }
 
+// A command has the sign of the axis and pushes out of the tissue, of a spring with as much force either way.
+TEST(Segment, TakesForClosingTheWayAgainstACommand) {
+  for (const double direction : {1.0, -1.0}) {
+    for (const bool only_a_spring : {false, true}) {
+      schema::Recording recording = Cutting{.direction = direction}.recording();
+      for (std::size_t row = 0; row < recording.position.size(); ++row) {
+        const double resists =
+            only_a_spring ? 4.0 * std::abs(recording.position[row]) : recording.force_measured[row];
+        recording.force_commanded.push_back(-direction * resists);
+      }
+      recording.force_measured.clear();
+      EXPECT_EQ(find_cycles(recording, {}).closing_direction, direction) << only_a_spring;
+    }
+  }
+}
+
 TEST(Segment, CountsStrokesAndNotNoise) {
   const auto cycles = find_cycles(Cutting{.noise = 0.02}.recording(), {});
   EXPECT_EQ(count(cycles, schema::Phase::closing), 4);
