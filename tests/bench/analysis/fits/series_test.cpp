@@ -176,6 +176,14 @@ TEST(RowDoubts, NameASensorThatWasNotZeroed) {
   }
 }
 
+// What is held and moved to both sides of its rest pulls as strongly as it pushes.
+TEST(RowDoubts, TakeWhatIsHeldForNoSensorThatWasNotZeroed) {
+  const AxisSeries series = strokes_with([](double x, double) { return 200.0 * (x - 0.009); });
+  EXPECT_THAT(doubts_of(series, {.folds = 0}),
+              testing::ElementsAre(AllOf(HasSubstr("a force of 1.78 N pulls already"),
+                                         HasSubstr("moved to both sides of where it rests"))));
+}
+
 TEST(RowDoubts, NameASensorThatDrifts) {
   AxisSeries series = kelvin_strokes();
   for (std::size_t i = 0; i < series.force.size(); ++i) series.force[i] -= 0.08 * (series.time_s[i] - 4.0);
