@@ -9,8 +9,8 @@
 namespace kerf::fitting {
 namespace {
 
-constexpr double step = 0.5;   ///< [standard errors]
-constexpr int max_steps = 20;  ///< outwards, doubling after the first few
+constexpr double profile_step = 0.5;  ///< [standard errors]
+constexpr int max_steps = 20;         ///< outwards, doubling after the first few
 
 /// The first value outwards from the best where the deviation reaches a limit, between the two points around
 /// it.
@@ -57,7 +57,7 @@ std::vector<Profile> profiles_of(const Problem& problem, const Samples& samples,
       ridge.begin_anew();
       double away = 0.0;
       for (int i = 0; i < max_steps; ++i) {
-        away += i < 8 ? step : step * std::ldexp(1.0, i - 8);
+        away += i < 8 ? profile_step : profile_step * std::ldexp(1.0, i - 8);
         const double value = at[k] + side * away * error;
         if (value < bounds.lower[k] || value > bounds.upper[k]) break;
         const double deviation = side * ridge.deviation(value);

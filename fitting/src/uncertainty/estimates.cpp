@@ -7,6 +7,7 @@
 
 #include "fracture/fracture_intervals.h"
 #include "infinite.h"
+#include "profiles/beside_zero.h"
 #include "profiles/limits.h"
 #include "profiles/profile.h"
 #include "profiles/separable.h"
@@ -165,7 +166,8 @@ class Estimation {
 
  private:
   /// Whether a parameter on a logarithmic scale is so small that the search had no reason to go on to its
-  /// bound: the sum of squares is the same without it. It sleeps where others are looked for along a ridge.
+  /// bound: the sum of squares is the same without it. On that scale nothing moves it from there, so that it
+  /// sleeps while others are followed along a ridge.
   [[nodiscard]] bool is_nothing(const Problem::Coordinate& coordinate) const {
     constexpr double small = 1e6;        // times the lower bound; larger ones are not asked
     constexpr double negligible = 1e-3;  // of the variance of a residual
@@ -399,65 +401,34 @@ class Estimation {
       const Problem::Coordinate& other = all[static_cast<std::size_t>(k)];
       Known* const known = known_of(other);
       if (known == nullptr || other == coordinate || !std::isfinite(known->std_error)) continue;
-      const double beside = uncertainty.determined[static_cast<std::size_t>(k)]
-                                ? std::sqrt(uncertainty.covariance(k, k))
-                                : infinite;
-      if (hangs_on(at[k], *known, beside, above.beside, k < held - all.begin() ? k : k - 1))
+      const double with_it = uncertainty.determined[static_cast<std::size_t>(k)]
+                                 ? std::sqrt(uncertainty.covariance(k, k))
+                                 : infinite;
+      const Eigen::Index place = k < held - all.begin() ? k : k - 1;  // among the others
+      if (hangs_on(at[k], known->std_error, with_it, above.beside, place))
         forget(*known, other, coordinate);
-      else
-        widen(*known, other, above.beside, k < held - all.begin() ? k : k - 1);
+      else if (!above.beside.empty())
+        widen(*known, other, above.beside, place);
     }
     return above.limits;
   }
 
-  /// Takes into an interval what it is beside each value of another parameter that lies at zero, up to the
-  /// limit of that: the interval by the profile that has both free, if the parameter is known as well beside
-  /// one value as beside another.
+  /// Takes into an interval what it is beside each value of another parameter that lies at zero.
   void widen(Known& known, const Problem::Coordinate& coordinate, const std::vector<BestBeside>& beside,
              Eigen::Index place) {
     const models::ParameterInfo& info = problem_.parameters[coordinate.parameter];
-    const double best = to_search_scale(info, value_of(coordinate));
-    const Limits& alone = known.limits;
-    const double down = std::isfinite(alone.lower) ? best - to_search_scale(info, alone.lower) : infinite;
-    const double up = std::isfinite(alone.upper) ? to_search_scale(info, alone.upper) - best : infinite;
-    double least = best - down;
-    double most = best + up;
-    for (const BestBeside& one : beside) {
-      least = std::min(least, one.others[place] - one.left * down);
-      most = std::max(most, one.others[place] + one.left * up);
-    }
-    known.std_error *= down + up > 0.0 && std::isfinite(down + up) ? (most - least) / (down + up) : 1.0;
-    if (least < best - down) {
-      const double end = may_be_zero(info) ? 0.0 : -infinite;
-      known.limits.lower = least > to_search_scale(info, info.lower) ? from_search_scale(info, least) : end;
-    }
-    if (most > best + up)
-      known.limits.upper =
-          most < to_search_scale(info, info.upper) ? from_search_scale(info, most) : infinite;
-    known.limits.by = IntervalBy::profile;
-    if (known.limits.lower == 0.0 && std::isinf(known.limits.upper)) known.limits = {};  // which is nothing
-    if (std::isfinite(known.limits.lower) && std::isfinite(known.limits.upper)) return;
+    const auto [limits, growth] =
+        widened(known.limits, info, to_search_scale(info, value_of(coordinate)), beside, place);
+    known = {.std_error = growth * known.std_error, .limits = limits};
+    if (std::isfinite(limits.lower) && std::isfinite(limits.upper)) return;
     const std::string name = name_of(coordinate);
     const auto said = std::ranges::find_if(unknowns_, [&](const Unknown& unknown) {
       return std::ranges::find(unknown.names, name) != unknown.names.end();
     });
     if (said == unknowns_.end())
-      unknowns_.push_back({{name}, hardly_known(name, known.limits)});
+      unknowns_.push_back({{name}, hardly_known(name, limits)});
     else if (said->names.size() == 1)
-      said->warning = hardly_known(name, known.limits);
-  }
-
-  /// Whether the data tell a parameter only as long as another one is zero, as they do the exponent of an
-  /// amplitude that is none: its standard error is far larger with that one free, and beside what that may be
-  /// it is another one altogether. @param with_it its standard error where that one is searched
-  [[nodiscard]] static bool hangs_on(double best, const Known& known, double with_it,
-                                     const std::vector<BestBeside>& beside, Eigen::Index place) {
-    constexpr double much = 10.0;  // more, in standard errors, than two that merely share what they explain
-    constexpr double far = 0.7;    // on the search scale: twice as large, or half
-    if (with_it <= much * known.std_error) return false;
-    return beside.empty() || std::ranges::any_of(beside, [&](const BestBeside& one) {
-             return !(std::abs(one.others[place] - best) <= far);
-           });
+      said->warning = hardly_known(name, limits);
   }
 
   void forget(Known& known, const Problem::Coordinate& other, const Problem::Coordinate& zero) {
