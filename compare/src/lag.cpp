@@ -237,6 +237,9 @@ Stretch longest_stretch(const std::vector<double>& time_s, std::size_t rows, dou
 std::optional<LagFit> fit_lag(std::span<const double> expected, std::span<const double> got,
                               const LagFitOptions& options) {
   constexpr double explained = 0.1;  // of what a whole shift leaves; where more is left, it is noise
+  // Strokes that repeat match half a period off as well, turned round: that has to leave less than half.
+  constexpr double turned_costs = 2.0;
+  constexpr double unshifted_counts = 1e-6;  // of what no shift leaves: less is nothing either way
   LagFitOptions used = options;
   const std::size_t rows = expected.size();
   if (rows < 4 * (kernel_reach + 4)) return {};
@@ -246,13 +249,23 @@ std::optional<LagFit> fit_lag(std::span<const double> expected, std::span<const 
   const std::size_t begin = busiest(expected, length);
   const auto part_e = expected.subspan(begin, length);
   const auto part_g = got.subspan(begin, length);
-  const std::array<long, 3> candidates{
-      0, best_shift(without_mean(part_e), without_mean(part_g), used.most_ticks, used.free_gain),
-      best_shift(changes_of(part_e), changes_of(part_g), used.most_ticks, used.free_gain)};
+  const auto means_e = without_mean(part_e);
+  const auto means_g = without_mean(part_g);
+  const auto changes_e = changes_of(part_e);
+  const auto changes_g = changes_of(part_g);
+  std::vector<long> candidates{0};
+  for (const bool any_sign : {false, true}) {
+    if (any_sign && !used.free_gain) continue;
+    candidates.push_back(best_shift(means_e, means_g, used.most_ticks, any_sign));
+    candidates.push_back(best_shift(changes_e, changes_g, used.most_ticks, any_sign));
+  }
+  const auto line_at = [&](long ticks) { return shifted.line(static_cast<double>(ticks), Kernel::linear); };
+  const double nothing = unshifted_counts * line_at(0).left;
   double least = std::numeric_limits<double>::infinity();
   long whole = 0;
   for (const long one : candidates) {
-    const double left = shifted.line(static_cast<double>(one), Kernel::linear).left;
+    const Line line = line_at(one);
+    const double left = (line.gain < 0.0 ? turned_costs : 1.0) * std::max(line.left, nothing);
     if (left < least) whole = one;
     least = std::min(least, left);
   }
