@@ -111,6 +111,26 @@ TEST(Align, ByLagKnowsOfNoneThatIsLongerThanWasLookedFor) {
   }
 }
 
+// Half a period off they match as well, turned round.
+TEST(Align, ByLagTakesStrokesThatRepeatForTurnedOnlyWhereTheyAre) {
+  const auto stroke = [](double t) { return 1.0 + std::sin(2.0 * std::numbers::pi * t); };
+  const Series expected = timed(0.0, 1e-3, 8000, 0.0, stroke);
+  for (const double noise_n : {0.0, 0.01}) {
+    for (const double lag_s : {0.05, 0.26, 0.3, 0.4, -0.3}) {
+      Series got = timed(0.0, 1e-3, 8000, lag_s, stroke);
+      const auto rough = test::noise(8000, noise_n, 7);
+      for (std::size_t i = 0; i < rough.size(); ++i) got.channels[0].value[i] += rough[i];
+      const Aligned runs = aligned(expected, got, {.by = AlignBy::lag});
+      ASSERT_TRUE(runs.lag);
+      EXPECT_NEAR(runs.lag->seconds, lag_s, 1e-3) << "with noise of " << noise_n << " N";
+    }
+  }
+  const Series turned = timed(0.0, 1e-3, 4000, 0.0137, [](double t) { return -wave(t); });
+  const Aligned runs = aligned(timed(0.0, 1e-3, 4000, 0.0, wave), turned, {.by = AlignBy::lag});
+  ASSERT_TRUE(runs.lag);
+  EXPECT_NEAR(runs.lag->seconds, 0.0137, 1e-4);
+}
+
 TEST(Align, ByLagSaysHowSureItIs) {
   int within = 0;
   for (unsigned seed = 1; seed <= 20; ++seed) {
