@@ -65,7 +65,8 @@ bool as_good_as(const FitResult& law, const FitResult& best, double jnd_n) {
          worse.mean <= worse.std_error;
 }
 
-Choice choose_simplest(std::span<const FitResult> results, const Series& series, const FitOptions& asked) {
+Choice choose_simplest(std::span<const FitResult> results, const Series& series, const FitOptions& asked,
+                       double line_rmse) {
   // Of what a test leaves there may be too little for folds.
   FitOptions options(asked);
   const auto has_folds = [](const FitResult& law) { return !std::isnan(law.held_out_rmse()); };
@@ -96,6 +97,16 @@ Choice choose_simplest(std::span<const FitResult> results, const Series& series,
     return {.model = "", .why = why.str()};
   }
   const bool felt = error(*best) > limit;
+  // As fitted, as the line is: it is not rendered.
+  const auto least = [](const FitResult* law) { return law->cv_rmse; };
+  const FitResult& nearest = **std::ranges::min_element(candidates, {}, least);
+  if (felt && options.folds > 0 && nearest.cv_rmse > nearly * line_rmse) {
+    std::ostringstream why;
+    why << std::setprecision(3) << "no law does as well on held-out data as a straight line of force over "
+        << "penetration: the best, " << nearest.model << ", errs by " << nearest.cv_rmse << unit
+        << " where the line errs by " << line_rmse << unit;
+    return {.model = "", .why = why.str()};
+  }
   const auto serves = [&](const FitResult* result) {
     if (!felt) return error(*result) <= limit;
     return options.folds > 0 ? as_good_as(*result, *best, limit)

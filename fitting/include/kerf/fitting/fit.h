@@ -249,8 +249,11 @@ struct Choice {
 /// force (root mean square); where none does, of those that are as_good_as() the best, and the reason says
 /// so. Held out are the cycles or blocks of the cross-validation, else the share that was kept back for a
 /// test. Where there is neither, the law with the least BIC.
-/// A law with undetermined_arms is chosen only where there is no other.
+/// A law with undetermined_arms is chosen only where there is no other; none where no force at all does
+/// better than each, or where none is within the JND and each errs by more than 1.05 times `line_rmse`, what
+/// held_out_line_rmse() gives (NaN: not known).
 [[nodiscard]] Choice choose_simplest(std::span<const FitResult> results, const Series& series,
-                                     const FitOptions& options);
+                                     const FitOptions& options,
+                                     double line_rmse = std::numeric_limits<double>::quiet_NaN());
 
 }  // namespace kerf::fitting
