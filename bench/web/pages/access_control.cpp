@@ -69,11 +69,9 @@ bool AccessControl::admits(const HttpRequest& request) const {
   return in_address != request.query.end() && is_same_secret(in_address->second, token_);
 }
 
-HttpResponse AccessControl::refuse(std::string_view why) {
-  const auto now = AttemptLimit::Clock::now();
-  const bool too_many = refusals_.wait(now) > AttemptLimit::Clock::duration::zero();
+HttpResponse AccessControl::refuse(std::string_view why, AttemptLimit::Clock::time_point now) {
+  if (refusals_.wait(now) > AttemptLimit::Clock::duration::zero()) return refusal(429);
   refusals_.note_failure(now);
-  if (too_many) return refusal(429);
   return {.status = 403, .body = fmt::format("{}\n", why)};
 }
 

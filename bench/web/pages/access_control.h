@@ -34,9 +34,10 @@ class AccessControl {
   /// site. Enough to ask for zero force, which is always safe; a foreign page is refused, since it could
   /// spoil an experiment by asking again and again.
   [[nodiscard]] bool admits_without_token(const HttpRequest& request) const;
-  /// The answer to a request that is not admitted: 403 with a sentence. After 100 within 10 s it is 429
-  /// without one. Whoever knows the token is admitted all the while: else anybody could lock them out.
-  [[nodiscard]] HttpResponse refuse(std::string_view why);
+  /// The answer to a request that is not admitted: 403 with a sentence. Where 100 within 10 s have had one it
+  /// is 429 without. Whoever knows the token is admitted all the while: else anybody could lock them out.
+  [[nodiscard]] HttpResponse refuse(std::string_view why,
+                                    AttemptLimit::Clock::time_point now = AttemptLimit::Clock::now());
 
  private:
   [[nodiscard]] bool is_ours(std::string_view host) const;
