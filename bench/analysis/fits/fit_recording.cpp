@@ -385,7 +385,7 @@ RecordingFit fit_recordings(std::span<const FitSource> all, const FitRecordingOp
     fit.floor = floor.get();
     for (const FittedLaw& law : fit.laws) fit.floor->lower_to(law.result.cv_rmse);
   }
-  fit.choice = fitting::choose_simplest(weighed_alike(fit.laws), pool, fit.settings);
+  fit.choice = fitting::choose_simplest(weighed_alike(fit.laws), pool, fit.settings, fit.line_cv_rmse_n);
   if (options.done != nullptr) *options.done = steps_of(options);
   return fit;
 }
