@@ -286,7 +286,12 @@ json numbers_as_json(const IdentifiedDevice& device, const IdentifiedAxis& of) {
   }
   add("encoder step", step, way);
   add("noise of the velocity", found.velocity_noise_m_s, way + "/s");
-  add("corner of its filter", found.velocity_corner_rad_s, "rad/s");
+  std::optional<Value> corner = found.velocity_corner_rad_s;
+  if (corner) {
+    for (double* const side : {&corner->value, &corner->lower, &corner->upper})
+      *side *= 0.5 / std::numbers::pi;
+  }
+  add("corner of its filter", corner, "Hz");
   add("motor constant", found.motor_constant, "1");
   add(found.saturation_n
           ? std::string("saturation")

@@ -199,10 +199,13 @@ void add_session_new(CLI::App& session, Context& context) {
   verb.takes_laws(context);
   verb.add_option("PROTOCOL", arguments->protocol, "The protocol, NAME.protocol.toml, or an experiment")
       .required();
-  verb.add_option("--subject", arguments->subject,
-                  "Code of the subject, no name: letters, digits, _ and -, 16 at most");
-  verb.add_option("--subjects", arguments->subjects,
-                  "Number of sessions to make, S01.h5 and so on, in the folder -o");
+  verb.add_option(
+      "--subject", arguments->subject,
+      "Code of the subject, no name: letters, digits, _ and -, 16 at most; a protocol needs this or "
+      "--subjects");
+  verb.add_option(
+      "--subjects", arguments->subjects,
+      "Number of sessions to make, S01.h5 and so on, in the folder -o; a protocol needs this or --subject");
   verb.add_option("-o,--output", arguments->output,
                   "The session file, or with --subjects a folder; an experiment has its own");
   verb.add_option("--replaces", arguments->replaces,

@@ -22,7 +22,7 @@ function numberTable(axis: string, numbers: readonly DeviceNumber[]): HTMLElemen
   const reach = reachOf(numbers.map(estimateOf).filter((it) => it !== null));
   const rows = numbers.map((it) => {
     const estimate = estimateOf(it);
-    const interval = estimate ? `${withUnit(it.lower, it.unit)} to ${withUnit(it.upper, it.unit)}` : "";
+    const interval = estimate ? `${withUnit(it.lower, it.unit, 4)} to ${withUnit(it.upper, it.unit, 4)}` : "";
     return [
       it.name,
       it.value === null ? "unknown" : withUnit(it.value, it.unit, 4),
