@@ -100,6 +100,32 @@ export const tests = {
     await until("the force is back", async () => !(await status(studio)).released);
   },
 
+  async "old tabs ask rarely, and make zero force also where the studio has had enough of refusing"({
+    browser,
+    studio,
+  }) {
+    await studio.serve();
+    const tabs = [await open(browser, studio, "fits"), await open(browser, studio, "sessions")];
+    for (const tab of tabs) await isInState(tab, "idle");
+    await studio.stop("SIGKILL");
+    await studio.serve("--port", new URL(studio.origin).port);
+    for (const tab of tabs) await isInState(tab, "outdated");
+    const old = tabs[1]; // which asks for the state of sessions twice a second, as long as it is of this studio
+    const asked = [];
+    old.on("request", (it) => asked.push(new URL(it.url()).pathname));
+    await until("it goes on to ask for the status", () => asked.length >= 3);
+    expect(
+      asked.every((it) => it === "/api/live/status"),
+      `nothing else is asked for: ${asked}`,
+    );
+    await old.route("**/api/live/status", (route) => route.fulfill({ status: 429, body: "Too Many Requests" }));
+    await startLoop(studio);
+    await old.getByRole("button", { name: "Zero force" }).click();
+    await isReleased(studio, "its zero force is heard");
+    await until("it says so", async () => (await words(old)).startsWith("Zero force was heard."));
+    expect(await old.getByRole("button", { name: "Reload" }).isVisible(), "it can be reloaded");
+  },
+
   async "a refusal is told in the studio's words, and only silence is called so"({ browser, studio }) {
     await studio.serve();
     const page = await open(browser, studio);

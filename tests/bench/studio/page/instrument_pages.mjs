@@ -95,11 +95,21 @@ export const tests = {
     expect(Math.abs(apart - 2.5) < 0.05, `half of the window: ${text}`);
     expect(text.includes("0.4"), `its inverse: ${text}`);
     const row = page.locator(".scope_cursors tr", { hasText: "position theta" });
-    const value = (it) => parseFloat(it) * (it.includes("mrad") ? 1e-3 : it.includes("µrad") ? 1e-6 : 1);
+    const value = (it) => {
+      expect(it.endsWith(" deg"), `in degrees, as the plot: ${it}`);
+      return parseFloat(it);
+    };
     // At one moment: what came in before the pause may still be drawn.
-    const cells = await row.evaluate((it) => [...it.querySelectorAll("td")].map((cell) => cell.textContent));
+    const cells = await until("there are values", async () => {
+      const it = await row.evaluate((each) => [...each.querySelectorAll("td")].map((cell) => cell.textContent));
+      return it.every((cell) => /\d/.test(cell)) ? it : null;
+    });
     const [a, b, difference] = cells.slice(0, 3).map((it) => value(it.replace("−", "-")));
-    expect(Math.abs(b - a - difference) < 2e-3, `${b} - ${a} is ${difference}`);
+    expect(Math.abs(b - a - difference) < 0.1, `${b} - ${a} is ${difference}`);
+    const seen = await page.locator(".time_value").first().textContent(); // the pointer is at B still
+    const between = /^([−\d.]+) to ([−\d.]+) deg$/.exec(seen)?.slice(1) ?? [parseFloat(seen), parseFloat(seen)];
+    const [least, most] = between.map((it) => Number(String(it).replace("−", "-")));
+    expect(b > least - 0.1 && b < most + 0.1, `${b} at B is what the plot reads, ${seen}`);
     await page.screenshot({ path: join(screenshots, "scope_cursors.png") });
     await page.getByRole("button", { name: "No cursors" }).click();
     await page.locator(".scope_cursors table").waitFor({ state: "hidden" });
@@ -119,7 +129,7 @@ export const tests = {
     expect(page.url().includes("view=spectrum"), page.url());
     await page.getByLabel("Spectrum of").selectOption("position theta");
     await until("the address says so", () => page.url().includes("spectrum=position"));
-    await page.getByText(/Largest: .* Hz/).waitFor();
+    await page.getByText(/Largest: [\d.]+ deg at .* Hz/).waitFor();
     await page.screenshot({ path: join(screenshots, "scope_spectrum.png") });
     await page.goBack();
     await page.locator(".scope_view:not([hidden]) >> text=Across").waitFor();
@@ -149,9 +159,9 @@ export const tests = {
       return { heads: heads.split(","), rows: rows.map((it) => it.split(",").map(Number)) };
     };
     const xy = tableOf(await given("CSV"));
-    expectEqual(xy.heads, ["position theta [rad]", "force measured theta [N]"], "what is over what");
+    expectEqual(xy.heads, ["position theta [deg]", "force measured theta [N]"], "what is over what");
     expect(xy.rows.length > 100, `${xy.rows.length} places`);
-    expect((await given("SVG")).includes("position theta [rad]"), "the axis says its unit");
+    expect((await given("SVG")).includes("position theta [deg]"), "the axis says its unit");
     await page.getByRole("button", { name: "Spectrum" }).click();
     await page.getByLabel("Spectrum of").selectOption("position theta");
     const text = await until("it is there", async () => {
@@ -159,7 +169,7 @@ export const tests = {
       return /Largest: .* at ([\d.]+) Hz/.exec(reading);
     });
     const { heads, rows } = tableOf(await given("CSV"));
-    expectEqual(heads, ["frequency [Hz]", "amplitude of position theta [rad]"], "what is over what");
+    expectEqual(heads, ["frequency [Hz]", "amplitude of position theta [deg]"], "what is over what");
     const [hz] = rows.reduce((most, row) => (row[1] > most[1] ? row : most));
     expect(Math.abs(hz - Number(text[1])) < 1e-3 * hz, `${hz} Hz, and the page says ${text[1]}`);
     expectNoComplaints(page);

@@ -173,10 +173,22 @@ export const tests = {
     expectEqual(await rows(page), ["other"], "what the search leaves");
     await page.fill(".list_search", "");
     studio.kerfOrThrow("fit", "cut.h5", "--models", "kelvin", "-o", "cut.fit");
+    studio.kerfOrThrow("chart", "cut.h5", "--laws", "kelvin", "-o", "cut.chart");
     await copyFile(join(studio.folder, "cut.h5"), join(studio.folder, "third.h5"));
     await until("a new one is listed without a reload", async () => (await rows(page)).includes("third"));
     await until("and the fit marks its recording", async () =>
       (await page.locator(".list_row", { hasText: "cut" }).textContent()).includes("fit"),
+    );
+    await until("its marks and its flag are whole", () =>
+      page.evaluate(() => {
+        const marks = [...document.querySelectorAll(".list_row .mark_badge")];
+        const isSeen = (it) => {
+          const { right, top, height } = it.getBoundingClientRect();
+          return document.elementFromPoint(right - 3, top + height / 2) === it;
+        };
+        const all = marks.map((it) => it.textContent).join(" ");
+        return ["fit", "chart", "⚑ 1"].every((wanted) => all.includes(wanted)) && marks.every(isSeen);
+      }),
     );
     await page.focus(".list_search");
     for (const key of ["ArrowDown", "ArrowDown", "ArrowDown", "Enter"]) await page.keyboard.press(key);
@@ -312,6 +324,27 @@ export const tests = {
       const box = await page.locator(data).boundingBox();
       const share = (box.width * box.height) / (1280 * 720);
       expect(share >= 0.7, `${tab}: ${(100 * share).toFixed(1)} % of the window`);
+    }
+  },
+
+  async "in a small window the stretch that is shown is told, and plots are high enough to be read"({
+    browser,
+    studio,
+  }) {
+    const page = await prepare({ browser, studio });
+    for (const [width, height] of [
+      [1024, 720],
+      [640, 360],
+    ]) {
+      await page.setViewportSize({ width, height });
+      await open(page, studio, "cut.h5", "time");
+      await page.getByText(/^0\.00 s to \d/).waitFor();
+      const isWhole = await page.locator(".time_reading").evaluate((it) => it.scrollWidth <= it.clientWidth);
+      expect(isWhole, `${width}: the stretch is told`);
+      for (const it of await page.locator(".time_over").all()) {
+        const box = await it.boundingBox();
+        expect(box.height >= 50, `${width}: a plot of ${box.height} pixels`);
+      }
     }
   },
 

@@ -270,8 +270,15 @@ export const tests = {
       await writeFile(join(studio.folder, name), await readFile(new URL(`../${name}`, protocol)));
     await studio.serve("--key-file", join(studio.folder, "keeper.key"));
     const page = await openWork(browser, studio, "session-new");
-    await form(page).getByLabel("protocol").selectOption("abx.protocol.toml");
-    await form(page).getByLabel("output").fill("S01");
+    const fill = async () => {
+      await form(page).getByLabel("protocol").selectOption("abx.protocol.toml");
+      await form(page).getByLabel("output").fill("S01");
+    };
+    await fill();
+    expectEqual((await run(page, studio)).state, "failed", "a session of nobody");
+    await page.getByText("failed: give the subject's code with “subject”, or how many subjects").first().waitFor();
+    await page.goto(studio.page("work/session-new"));
+    await fill();
     await page.getByText("more options").click();
     await page.getByRole("textbox", { name: "subject", exact: true }).fill("S01");
     await page.getByLabel("no check").check();

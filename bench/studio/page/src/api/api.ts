@@ -15,10 +15,16 @@ export class ApiError extends Error {
   }
 }
 
+/** Refused for its token: the studio that runs is not the one that this page is of. 429 is what many refusals end in. */
+export function isRefused(error: unknown): boolean {
+  return error instanceof ApiError && (error.status === 403 || error.status === 429);
+}
+
 type Parameters = Record<string, string | number | readonly number[]>;
 
 export class Api {
   private readonly requests = new Requests();
+  private isOutdated = false; // as the last status says
 
   constructor(readonly token: string) {}
 
@@ -95,7 +101,14 @@ export class Api {
 
   /** Past what else is being read, so that only a studio that does not answer is late. */
   async loopStatus(signal: AbortSignal): Promise<LoopStatus> {
-    return (await (await this.send("/api/live/status", { signal })).json()) as LoopStatus;
+    try {
+      const answer = await this.ask("/api/live/status", { signal });
+      this.isOutdated = false;
+      return (await answer.json()) as LoopStatus;
+    } catch (error) {
+      if (isRefused(error)) this.isOutdated = true;
+      throw error;
+    }
   }
 
   /**
@@ -108,11 +121,10 @@ export class Api {
       const patience = new AbortController();
       const timer = setTimeout(() => patience.abort(), 1000);
       try {
-        await this.send("/api/live/zero", { method: "POST", keepalive: true, signal: patience.signal });
+        await this.ask("/api/live/zero", { method: "POST", keepalive: true, signal: patience.signal });
         return;
       } catch (error) {
-        if (tries >= 20 || (error instanceof ApiError && error.status === 403))
-          throw error instanceof ApiError ? error : silent();
+        if (tries >= 20 || isRefused(error)) throw error instanceof ApiError ? error : silent();
         await new Promise((go) => setTimeout(go, 100));
       } finally {
         clearTimeout(timer);
@@ -129,7 +141,13 @@ export class Api {
     return this.requests.take(async (own) => take(await this.send(address(path, parameters), { signal: own })), signal);
   }
 
+  /** A page that is outdated asks for nothing: all would be refused, and refusals are counted. */
   private async send(path: string, options: RequestInit): Promise<Response> {
+    if (this.isOutdated) throw new ApiError(403, "This page is older than the studio that runs: reload it.");
+    return this.ask(path, options);
+  }
+
+  private async ask(path: string, options: RequestInit): Promise<Response> {
     const headers = { ...(options.headers as Record<string, string>), "X-Kerf-Token": this.token };
     let answer: Response;
     try {

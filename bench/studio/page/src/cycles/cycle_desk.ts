@@ -68,8 +68,10 @@ export class CycleDesk {
       if (!view) return;
       this.begin(view);
       const kept = keptDraft(this.id);
-      if (kept?.uuid === view.uuid && kept.version === view.version) this.record(kept.draft);
-      else if (kept) this.putOnTop(kept.base, kept.draft, kept.uuid === view.uuid);
+      if (kept?.uuid === view.uuid && kept.version === view.version) {
+        this.record(kept.draft);
+        this.context.say("These are as they were left, and are not saved.");
+      } else if (kept) this.putOnTop(kept.base, kept.draft, kept.uuid === view.uuid);
     } catch (error) {
       this.fail(error);
     }
@@ -231,13 +233,11 @@ export class CycleDesk {
       end(true);
       if (this.context.signal.aborted) return;
       this.isSaving = false;
-      if (draft.settings && this.draft === draft) this.begin(saved);
-      else {
-        // What was before can still be come back to, and be saved again.
-        this.take(saved);
-        this.saved = { ...draft, settings: null };
-        [this.uuid, this.version] = [saved.uuid, saved.version];
-      }
+      // What was before can still be come back to, and be saved again.
+      this.take(saved);
+      this.saved = { settings: null, phases: saved.phases, said: saved.said };
+      [this.uuid, this.version] = [saved.uuid, saved.version];
+      if (this.draft === draft) this.history?.rename(this.saved);
       keepDraft(this.id, null);
       this.context.say(`Saved: ${saved.edits[saved.edits.length - 1]?.what ?? ""}`);
       this.context.lookAtFolder();

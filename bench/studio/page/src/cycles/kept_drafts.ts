@@ -1,6 +1,7 @@
+import { keep, kept } from "../editor/kept";
 import type { Draft } from "./cycle_draft";
 
-/** What was changed and not saved, of each recording: it outlives tabs, reloads and a studio that is started anew. */
+/** What was changed and not saved, of each recording. */
 export interface KeptDraft {
   uuid: string;
   version: string; // of the recording's cycles when it was begun
@@ -10,22 +11,13 @@ export interface KeptDraft {
 
 const keyOf = (id: string): string => `kerf-cycles-${id}`;
 
-export function keepDraft(id: string, kept: KeptDraft | null): void {
-  try {
-    if (kept) sessionStorage.setItem(keyOf(id), JSON.stringify(kept));
-    else sessionStorage.removeItem(keyOf(id));
-  } catch {
-    // a browser that keeps nothing: the draft lives as long as the tab is open
-  }
+export function keepDraft(id: string, draft: KeptDraft | null): void {
+  keep(keyOf(id), draft);
 }
 
 export function keptDraft(id: string): KeptDraft | null {
-  try {
-    const kept = JSON.parse(sessionStorage.getItem(keyOf(id)) ?? "null") as KeptDraft | null;
-    return kept && Array.isArray(kept.draft.phases) && Array.isArray(kept.base.phases) ? kept : null;
-  } catch {
-    return null;
-  }
+  const found = kept(keyOf(id)) as Partial<KeptDraft> | null;
+  return Array.isArray(found?.draft?.phases) && Array.isArray(found.base?.phases) ? (found as KeptDraft) : null;
 }
 
 const authorKey = "kerf-author";
@@ -42,6 +34,6 @@ export function keepAuthor(name: string): void {
   try {
     localStorage.setItem(authorKey, name);
   } catch {
-    // as above
+    // a browser that keeps nothing
   }
 }

@@ -29,6 +29,12 @@ export class History<Value> {
     this.tag = tag;
   }
 
+  /** What is now, as it is called from here on: no step of its own. */
+  rename(value: Value): void {
+    this.value = value;
+    this.tag = "";
+  }
+
   undo(): boolean {
     return this.step(this.before, this.after);
   }

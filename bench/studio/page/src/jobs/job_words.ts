@@ -1,6 +1,7 @@
 import type { Job } from "../api/jobs";
 import { length } from "../recordings/recording_list";
 import { date } from "../ui/words/moments";
+import { inPageWords } from "./value_field";
 
 // What a job is said to be, wherever it is shown.
 
@@ -22,7 +23,7 @@ export function inWords(job: Job): string {
     case "interrupted":
       return "interrupted: the studio ended before it was done";
     case "failed":
-      return job.error;
+      return `failed: ${inPageWords(job.error)}`;
   }
 }
 

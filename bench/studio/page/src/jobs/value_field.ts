@@ -16,6 +16,11 @@ export function plainName(name: string): string {
   return name.replace(/^-+/, "").replaceAll("-", " ").toLowerCase();
 }
 
+/** What the program says, with its options by the names that the forms have: "--subjects" is “subjects”. */
+export function inPageWords(said: string): string {
+  return said.replace(/(?<![\w'"“-])(?:--[a-z][a-z-]*|-o\b)/g, (it) => `“${it === "-o" ? "output" : plainName(it)}”`);
+}
+
 /** The files, or folders, that suit a value. */
 export function namesFor(value: VerbValue, names: OfferedNames): string[] {
   if (value.kind === "folder") return names.folders;
@@ -31,7 +36,7 @@ function framed(value: VerbValue, control: HTMLElement): HTMLElement {
     { class: "value_field" },
     element("label", { for: id }, plainName(value.name), value.required ? element("b", {}, " needed") : null),
     control,
-    element("p", { id: `${id}_about`, class: "quiet" }, value.label),
+    element("p", { id: `${id}_about`, class: "quiet" }, inPageWords(value.label)),
   );
 }
 
@@ -91,7 +96,7 @@ function several(value: VerbValue, choices: readonly string[]): ValueField {
     front,
     fold,
     choices.length === 0 ? element("p", {}, "There is none in this folder.") : null,
-    element("p", { id: `${id}_about`, class: "quiet" }, value.label),
+    element("p", { id: `${id}_about`, class: "quiet" }, inPageWords(value.label)),
   );
   const chosen = (): string[] => boxes.filter((it) => it.checked).map((it) => it.value);
   const lay = (): void => {

@@ -1,5 +1,5 @@
 import { button, element } from "../ui/dom";
-import { plain, withUnit } from "../ui/numbers";
+import { asDrawn, plain, withUnit } from "../ui/numbers";
 import { columnAt, type TimeLine } from "../ui/time/time_line";
 import type { TimeStack } from "../ui/time/time_stack";
 import { middle } from "./views/xy_view";
@@ -81,7 +81,7 @@ export class ScopeCursors {
       const [first = null, second = null] = values;
       const texts = [...values, first !== null && second !== null ? second - first : null];
       texts.forEach((value, i) => {
-        const written = withUnit(value, line.unit, 4);
+        const written = asDrawn(value, line.unit, 4);
         const cell = this.cells[k]?.[i];
         if (cell && cell.textContent !== written) cell.textContent = written;
       });

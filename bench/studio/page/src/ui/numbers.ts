@@ -32,6 +32,13 @@ export function plain(value: number | null | undefined, digits = 3): string {
 /** Degrees, as the charts of `kerf report` have them, in place of radians. */
 const drawnUnits: Readonly<Record<string, string>> = { rad: "deg", "rad/s": "deg/s" };
 
+/** As withUnit(), of what a plot draws: angles in degrees, as on its axis. */
+export function asDrawn(value: number | null, unit: string, digits = 3): string {
+  const drawn = drawnUnits[unit];
+  if (drawn === undefined || value === null || !Number.isFinite(value)) return withUnit(value, unit, digits);
+  return `${plain((value * 180) / Math.PI, digits)} ${drawn}`;
+}
+
 /**
  * The unit or prefix that suits an axis reaching to `largest`: value / factor is a number of `text`. Angles are in
  * degrees, whatever their size.
@@ -46,7 +53,7 @@ export function unitFor(largest: number, unit: string): { factor: number; text: 
 }
 
 /** Degrees, percents, numbers and what already has a prefix are written as they are. */
-function takesPrefix(unit: string): boolean {
+export function takesPrefix(unit: string): boolean {
   return /^(rad|m|N|V|A|W|J|s|Hz|Pa)([/·*].*)?$/.test(unit);
 }
 

@@ -1,4 +1,5 @@
 import type { ProtocolCheck, ProtocolText } from "../api/protocols";
+import { keep, kept } from "../editor/kept";
 import { ProtocolForm } from "../sessions/protocol_form";
 import { button, element, labelled } from "../ui/dom";
 import { whyNoName } from "../ui/file_names";
@@ -8,24 +9,6 @@ import type { PageContext, View } from "../ui/view";
 const after_ms = 300; // of silence a changed text is tried
 
 const keyOf = (id: string): string => `kerf-protocol-${id || "new"}`;
-
-/** What was written and not saved: it outlives reloads and a studio that is started anew. */
-function keep(id: string, kept: { name: string; text: string } | null): void {
-  try {
-    if (kept) sessionStorage.setItem(keyOf(id), JSON.stringify(kept));
-    else sessionStorage.removeItem(keyOf(id));
-  } catch {
-    // a browser that keeps nothing: the text lives as long as the tab is open
-  }
-}
-
-function kept(id: string): { name: string; text: string } | null {
-  try {
-    return JSON.parse(sessionStorage.getItem(keyOf(id)) ?? "null") as { name: string; text: string } | null;
-  } catch {
-    return null;
-  }
-}
 
 function inWords(check: ProtocolCheck): string {
   if (check.problem) return check.problem;
@@ -45,7 +28,7 @@ function mount(root: HTMLElement, context: PageContext): () => void {
   const { api, place, signal } = context;
   const latest = new Latest(signal);
   let timer = 0;
-  const before = kept(place.id); // ahead of what is kept below
+  const before = kept(keyOf(place.id)) as { name: string; text: string } | null; // ahead of what is kept below
   let isByHand = place.id !== "" || before !== null;
   let isTouched = before !== null;
   let saved = ""; // the text that stands in the file
@@ -103,7 +86,7 @@ function mount(root: HTMLElement, context: PageContext): () => void {
     isNameFit();
     if (!isByHand) text.value = form.text(name.value.trim());
     byHand.hidden = !isByHand || place.id !== "";
-    keep(place.id, isTouched && text.value !== saved ? { name: name.value, text: text.value } : null);
+    keep(keyOf(place.id), isTouched && text.value !== saved ? { name: name.value, text: text.value } : null);
     save.disabled = true;
     verdict.setAttribute("aria-busy", "true"); // what it says is of an earlier text
     latest.end(); // and so is an answer that is on its way
@@ -130,7 +113,7 @@ function mount(root: HTMLElement, context: PageContext): () => void {
     const order = place.id ? { id: place.id, text: text.value } : { name: name.value.trim(), text: text.value };
     try {
       const made = await api.post<{ id: string; name: string }>("/api/protocol", order);
-      keep(place.id, null);
+      keep(keyOf(place.id), null);
       context.lookAtFolder();
       context.go("sessions");
       context.say(`${made.name} is saved: rehearse it, or make a session of it.`);

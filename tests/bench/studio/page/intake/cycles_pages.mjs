@@ -281,6 +281,13 @@ export const tests = {
     const second = await dragged(two, await handleOf(two, 3), 12);
     await save(one);
     await saved(one);
+    await one.getByRole("button", { name: "Undo", exact: true }).click();
+    await until(
+      "the first save leaves what was before to come back to",
+      async () => (await state(one)) === "not saved",
+    );
+    await one.getByRole("button", { name: "Redo", exact: true }).click();
+    await until("and it stands as saved again", async () => (await state(one)) === "as saved");
     await save(two);
     await two.getByRole("button", { name: "Load them, mine on top" }).click();
     await until("its own change is there still", async () => (await state(two)) === "not saved");
@@ -293,10 +300,19 @@ export const tests = {
   },
 
   async LosesNothingWhereTheRecordingOrTheStudioGoes({ browser, studio }) {
-    const page = await prepare({ browser, studio });
+    let page = await prepare({ browser, studio });
     const wanted = await dragged(page, await handleOf(page, 2), 12);
     await page.reload();
     await until("it outlives a reload", async () => (await state(page)) === "not saved");
+    const context = page.context();
+    await page.close();
+    const other = await openCycles(await context.newPage(), studio, 2);
+    await until("it outlives its tab", async () => (await state(other)) === "not saved");
+    expect((await other.textContent("#notice")).includes("as they were left"), "and says what it is");
+    await other.getByRole("button", { name: "Undo", exact: true }).click();
+    await until("which can be undone", async () => (await state(other)) === "as saved");
+    await other.getByRole("button", { name: "Redo", exact: true }).click();
+    page = other;
     await studio.stop("SIGKILL");
     await save(page);
     await until("that nobody answers is said", async () =>

@@ -1,4 +1,4 @@
-import { linearTicks, logarithmicTicks, plain, unitFor, withUnit } from "../../ui/numbers";
+import { linearTicks, logarithmicTicks, plain, takesPrefix, unitFor, withUnit } from "../../ui/numbers";
 import { palette } from "../../ui/palette";
 
 /** A side of a plot: from where to where, in which unit, and what it is. */
@@ -87,9 +87,9 @@ function titleOf(side: Side): string {
   return text ? `${side.name} [${text}]` : side.name;
 }
 
-/** Over decades each tick has a prefix of its own, but for a frequency. */
+/** Over decades each tick has a prefix of its own, but for a frequency and what takes none. */
 function hasPrefixes(side: Side): boolean {
-  return side.logarithmic === true && side.unit !== "Hz";
+  return side.logarithmic === true && side.unit !== "Hz" && takesPrefix(side.unit);
 }
 
 function unitOf(side: Side): { factor: number; text: string } {
@@ -110,7 +110,10 @@ function labels(
   const every = side.logarithmic ? Math.max(1, Math.ceil(ticks.length / Math.max(2, count))) : 1;
   ticks.forEach((tick, k) => {
     if (k % every !== 0) return;
-    draw(Math.round(place(tick)) + 0.5, hasPrefixes(side) ? withUnit(tick, side.unit, 1) : plain(tick / factor, 4));
+    draw(
+      Math.round(place(tick)) + 0.5,
+      hasPrefixes(side) ? withUnit(tick, side.unit, 1) : plain(tick / factor, side.logarithmic && tick < 1e-4 ? 1 : 4),
+    );
   });
 }
 

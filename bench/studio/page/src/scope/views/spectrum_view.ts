@@ -4,7 +4,7 @@ import { inWords } from "../../recordings/trace_groups";
 import { element, labelled, select, setOptions } from "../../ui/dom";
 import { figureOf, lineOf } from "../../ui/figure_description";
 import { Latest } from "../../ui/latest";
-import { plain, withUnit } from "../../ui/numbers";
+import { asDrawn, plain, unitFor } from "../../ui/numbers";
 import { palette } from "../../ui/palette";
 import { exportMenu } from "../../ui/plot/out/export_menu";
 import type { Sheet } from "../../ui/plot/out/sheet";
@@ -86,13 +86,20 @@ export class SpectrumView {
       .ask((signal) => this.api.view("/api/live/view", { traces: String(number), ...range }, signal))
       .then((view) => {
         if (!view) return;
-        this.spectrum = view.rowsPerColumn <= 1 ? spectrumOf(view.traces[0]?.largest ?? [], 1 / rate_hz) : null;
+        const { factor } = this.drawn();
+        const values = Array.from(view.traces[0]?.largest ?? [], (it) => it / factor);
+        this.spectrum = view.rowsPerColumn <= 1 ? spectrumOf(values, 1 / rate_hz) : null;
         this.paint();
       }, this.complain);
   }
 
   private unit(): string {
     return this.traces.find((it) => it.name === this.trace.value)?.unit ?? "";
+  }
+
+  /** What amplitudes are drawn in: angles in degrees, as over time. */
+  private drawn(): { factor: number; text: string } {
+    return unitFor(0, this.unit());
   }
 
   /** What is drawn, from the first line that is. */
@@ -113,7 +120,7 @@ export class SpectrumView {
       log_y: true,
       y_range: rangeOf(peakOf({ step_hz, amplitude }).amplitude),
     };
-    return { name, figures: [figureOf("frequency [Hz]", `${name} [${this.unit()}]`, over)] };
+    return { name, figures: [figureOf("frequency [Hz]", `${name} [${this.drawn().text || "1"}]`, over)] };
   }
 
   private choose(): void {
@@ -127,13 +134,13 @@ export class SpectrumView {
     const { spectrum } = this;
     if (!spectrum || this.root.hidden) return;
     const { amplitude, step_hz } = spectrum;
-    const unit = this.unit();
+    const { factor, text: unit } = this.drawn();
     const peak = peakOf(spectrum);
     const [bottom, top] = rangeOf(peak.amplitude);
     const text =
       peak.amplitude < 1e-12
         ? "It does not change."
-        : `Largest: ${withUnit(peak.amplitude, unit)} at ${plain(peak.hz, 4)} Hz; lines ${plain(step_hz, 3)} Hz apart`;
+        : `Largest: ${asDrawn(peak.amplitude * factor, this.unit())} at ${plain(peak.hz, 4)} Hz; lines ${plain(step_hz, 3)} Hz apart`;
     if (this.reading.textContent !== text) this.reading.textContent = text;
     const axes = drawAxes(
       this.canvas,

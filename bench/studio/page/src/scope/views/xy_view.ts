@@ -1,5 +1,6 @@
 import { element, labelled, select, setOptions } from "../../ui/dom";
 import { figureOf, lineOf } from "../../ui/figure_description";
+import { unitFor } from "../../ui/numbers";
 import { palette } from "../../ui/palette";
 import { exportMenu } from "../../ui/plot/out/export_menu";
 import type { Sheet } from "../../ui/plot/out/sheet";
@@ -100,10 +101,12 @@ export class XyView {
     if (!x || !y) throw new Error("Nothing is drawn yet.");
     const [first, end] = columnsWithin(x, this.shown.from, this.shown.to);
     const columns = Array.from({ length: Math.max(0, end - first) }, (_, k) => first + k);
+    // Angles in degrees, as they are drawn.
     const values = (line: TimeLine): (number | null)[] =>
-      columns.map((k) => middle(line, k)).map((it) => (Number.isNaN(it) ? null : it));
+      columns.map((k) => middle(line, k) / unitFor(0, line.unit).factor).map((it) => (Number.isNaN(it) ? null : it));
+    const titleOf = (line: TimeLine): string => `${line.name} [${unitFor(0, line.unit).text || "1"}]`;
     const drawn = lineOf("", values(x), values(y), { width: 1 });
-    return { name, figures: [figureOf(`${x.name} [${x.unit}]`, `${y.name} [${y.unit}]`, { curves: [drawn] })] };
+    return { name, figures: [figureOf(titleOf(x), titleOf(y), { curves: [drawn] })] };
   }
 
   private choose(): void {

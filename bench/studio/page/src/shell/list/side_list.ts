@@ -125,30 +125,31 @@ export class SideList {
   }
 
   private row(it: Entry): HTMLElement {
-    const marks = element("span", { class: "list_marks" }, ...it.marks.map((name) => badge(name)));
-    const told = (picture: Thumbnail): void => {
-      if (picture.flagged > 0) marks.prepend(badge("flagged", `⚑ ${picture.flagged}`));
+    const picture = element("span", { class: "list_picture" });
+    const told = ({ flagged }: Thumbnail): void => {
+      if (flagged > 0) picture.append(badge("flagged", `⚑ ${flagged}`));
     };
+    if (this.choice.kind === "recordings") picture.append(this.thumbnails.of(it, told));
     const [name, folder] = inShort(it.name);
     return element(
       "a",
       { class: "list_row", href: it.address, title: it.name },
-      this.choice.kind === "recordings" ? this.thumbnails.of(it, told) : null,
+      picture.hasChildNodes() ? picture : null,
       element(
         "span",
         { class: "list_text" },
         element(
           "span",
-          { class: "list_head" },
-          element(
-            "span",
-            { class: "list_name" },
-            element("bdi", {}, name),
-            folder ? element("span", { class: "list_folder" }, ` ${folder}`) : null,
-          ),
-          marks,
+          { class: "list_name" },
+          element("bdi", {}, name),
+          folder ? element("span", { class: "list_folder" }, ` ${folder}`) : null,
         ),
-        element("span", { class: "list_facts" }, it.facts),
+        element(
+          "span",
+          { class: "list_more" },
+          element("span", { class: "list_facts" }, it.facts),
+          it.marks.length > 0 ? badge(it.marks.join(" ")) : null,
+        ),
       ),
     );
   }

@@ -1,6 +1,6 @@
 import "./force_bar.css";
 
-import { ApiError, isSilence, type Api } from "../../api/api";
+import { isRefused, isSilence, type Api } from "../../api/api";
 import type { LoopStatus } from "../../api/loop";
 import { forceStates, type ForceState } from "./force_states";
 import { OtherTabs } from "./other_tabs";
@@ -14,6 +14,7 @@ interface Act {
 
 const patience_ms = 2500;
 const look_ms = 300;
+const outdated_ms = 3000; // as rarely as does for telling that no studio runs any more
 const calm_ms = 700; // a second click of a double one, or a second thought, comes before
 
 /** Says what there is of force in the hand, on every page, and keeps the button for zero force at work. */
@@ -29,6 +30,7 @@ export class ForceBar {
   private unheard = 0; // requests for zero force that nobody has answered yet
   /** What became of the last one, as long as no status tells. */
   private last: "none" | "heard" | "missed" = "none";
+  private looked = 0; // when the status was asked for
   private isDown = false; // Escape, and the page knows
 
   constructor(
@@ -45,7 +47,8 @@ export class ForceBar {
     this.listen();
     void this.look();
     setInterval(() => {
-      if (!this.asking) void this.look();
+      const wait = this.state === "outdated" ? outdated_ms : 0;
+      if (!this.asking && performance.now() - this.looked >= wait) void this.look();
     }, look_ms);
   }
 
@@ -97,7 +100,7 @@ export class ForceBar {
   }
 
   private showFailure(error: unknown): void {
-    if (error instanceof ApiError && error.status === 403) {
+    if (isRefused(error)) {
       const before = { none: "", heard: "Zero force was heard. ", missed: "Zero force was refused. " }[this.last];
       const words = `${before}This page is older than the studio that runs: reload it`;
       this.show("outdated", words, { text: "Reload", press: () => this.reload() });
@@ -113,6 +116,7 @@ export class ForceBar {
   private async look(): Promise<void> {
     if (this.unheard > 0) return;
     this.asking?.abort();
+    this.looked = performance.now();
     const asked = (this.asking = new AbortController());
     const timer = setTimeout(() => asked.abort(), patience_ms);
     try {

@@ -14,7 +14,7 @@ const cuttable = [
   ".preview_name",
   ".list_name",
   ".list_facts",
-  ".list_marks",
+  ".mark_badge",
   ".palette_title",
   ".rendered",
   ".cycle_kinds",
