@@ -344,6 +344,25 @@ TEST(Choice, NamesNoLawThatErrsByMoreThanNoForceAtAll) {
               HasSubstr("no law does better on held-out data than no force at all: the best, kelvin"));
 }
 
+TEST(Choice, NamesNoLawWhereAStraightLineErrsLess) {
+  const Strokes strokes(4000, 0.0, kelvin);
+  const double force_n = rms_of(strokes.series());
+  const auto erring = [](double cv_rmse) {
+    return FitResult{
+        .model = "kelvin", .free_parameters = 3, .r2 = 0.5, .cv_rmse = cv_rmse, .converged = true};
+  };
+  const double line_n = 0.4 * force_n;
+  const Choice choice = choose_simplest(std::vector{erring(0.45 * force_n)}, strokes.series(), {}, line_n);
+  EXPECT_EQ(choice.model, "");
+  EXPECT_THAT(choice.why, HasSubstr("as a straight line of force over penetration: the best, kelvin"));
+  const auto chosen = [&](double cv_rmse, double line) {
+    return choose_simplest(std::vector{erring(cv_rmse)}, strokes.series(), {}, line).model;
+  };
+  EXPECT_EQ(chosen(0.41 * force_n, line_n), "kelvin") << "the spread of cycles hides so little";
+  EXPECT_EQ(chosen(0.45 * force_n, std::nan("")), "kelvin") << "nothing is known of a line";
+  EXPECT_EQ(chosen(1e-3 * force_n, 1e-4 * force_n), "kelvin") << "both are within the JND";
+}
+
 TEST(Choice, SaysWhichLawsItMeansWhereOneThatIsOutOfTheQuestionErrsLess) {
   const Strokes strokes(4000, 0.0, kelvin);
   const FitResult constant{
