@@ -50,6 +50,17 @@ TEST_F(AccessControlOfAServer, AnswersGuessesMoreBrieflyAndStillAdmitsWhoKnows) 
   EXPECT_TRUE(access_.admits(asking()));
 }
 
+TEST_F(AccessControlOfAServer, SaysWhyAgainAfterTenSecondsHoweverOftenItIsAskedMeanwhile) {
+  // A tab from before the studio was started anew asks on and on; what it is told is why it should be
+  // reloaded.
+  const auto begin = AttemptLimit::Clock::now();
+  int told = 0;
+  for (int tenth = 0; tenth < 1000; ++tenth)
+    for (int tab = 0; tab < 2; ++tab)
+      told += access_.refuse("No.", begin + std::chrono::milliseconds(100 * tenth)).status == 403 ? 1 : 0;
+  EXPECT_EQ(told, 1000) << "100 in each 10 s";
+}
+
 TEST_F(AccessControlOfAServer, HasAKeyForOneAddressThatOpensNoOther) {
   HttpRequest request = asking();
   request.headers.erase("x-kerf-token");
