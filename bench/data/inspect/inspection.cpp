@@ -77,6 +77,27 @@ void add_columns(Inspection& inspection, const schema::RecordedRows& rows, const
   }
 }
 
+/// Requires that the positions are the first of the signals.
+void add_velocities(Inspection& inspection, const schema::RecordedRows& rows, const BlockedValues& time_s) {
+  if (!rows.about().header.velocity_derived.empty()) return;
+  const auto& axes = rows.about().axes;
+  for (std::size_t axis = 0; axis < std::min(rows.width(Column::position), rows.width(Column::velocity));
+       ++axis) {
+    const BlockedValues position = axis_values(rows, Column::position, axis);
+    const BlockedValues velocity = axis_values(rows, Column::velocity, axis);
+    const SignalFacts& facts = inspection.signals[axis].facts;
+    inspection.velocities.push_back(
+        {.name = axes.size() == 1 ? "velocity" : fmt::format("velocity.{}", axes[axis].name),
+         .position_unit = axes[axis].position_unit,
+         .match = velocity_match({.time_s = time_s,
+                                  .position = position,
+                                  .velocity = velocity,
+                                  .period_s = inspection.sampling.period_s,
+                                  .position_noise = facts.noise.value_or(0.0),
+                                  .position_range = facts.most - facts.least})});
+  }
+}
+
 /// Mean step of the time in contact: what paces a recording may depend on what is met. 0: not known.
 double mean_step(const BlockedValues& time_s, const ContactRows& contact) {
   double seconds = 0.0;
@@ -191,6 +212,15 @@ void warn_of_sampling(const Sampling& sampling, Lines& lines) {
   }
 }
 
+void warn_of_velocities(const Inspection& inspection, Lines& lines) {
+  for (const InspectedVelocity& velocity : inspection.velocities) {
+    if (!velocity.match) continue;
+    const std::string doubt =
+        velocity_doubt(*velocity.match, velocity.position_unit, inspection.sampling.period_s);
+    if (!doubt.empty()) lines.push_back(velocity.name + " " + doubt);
+  }
+}
+
 void warn_of_contact(const Inspection& inspection, Lines& lines) {
   if (!inspection.contact) {
     lines.emplace_back("there is no force: contact, drift and lag are not known");
@@ -233,7 +263,8 @@ Inspection inspect(const schema::RecordedRows& rows, const InspectOptions& optio
                         .force_unit = axis.force_unit,
                         .position_unit = axis.position_unit,
                         .sampling = sampling_of(rows),
-                        .signals = {}};
+                        .signals = {},
+                        .velocities = {}};
   const BlockedValues time_s = axis_values(rows, Column::time);
   const BlockedValues position = axis_values(rows, Column::position, options.axis);
   const BlockedValues force = axis_values(rows, force_column(rows), options.axis);
@@ -243,6 +274,7 @@ Inspection inspect(const schema::RecordedRows& rows, const InspectOptions& optio
                       .position_noise = noise_of(position, quantum_of(position)).value_or(0.0),
                       .contact = inspection.contact};
   add_columns(inspection, rows, beside);
+  add_velocities(inspection, rows, time_s);
   if (inspection.contact)
     inspection.lag =
         lag_between(position, force, inspection.contact->spans, mean_step(time_s, *inspection.contact));
@@ -257,6 +289,7 @@ std::vector<std::string> warnings_of(const Inspection& inspection) {
     warn_of_the_end(signal, signal.ends.most, "largest", lines);
   }
   for (const InspectedSignal& signal : inspection.signals) warn_of_a_dead_zone(signal, lines);
+  warn_of_velocities(inspection, lines);
   warn_of_cycles(inspection.cycles.cycles, lines);
   warn_of_contact(inspection, lines);
   for (const InspectedSignal& signal : inspection.signals) {

@@ -13,6 +13,7 @@
 #include "inspect/lag.h"
 #include "inspect/sampling.h"
 #include "inspect/signal_facts.h"
+#include "inspect/velocity_match.h"
 #include "recordings/contact_rows.h"
 
 namespace kerf::bench {
@@ -37,6 +38,13 @@ struct InspectedSignal {
   [[nodiscard]] bool is_blind_at_zero() const { return is_force && facts.is_blind_at_zero(); }
 };
 
+/// A velocity that was recorded; of those that were derived from the position there is nothing to ask.
+struct InspectedVelocity {
+  std::string name;  ///< "velocity", "velocity.theta"
+  std::string position_unit;
+  std::optional<VelocityMatch> match;  ///< unknown at rest
+};
+
 /// The cycles of the axis.
 struct InspectedCycles {
   bool are_stored = false;  ///< in the recording; else found now, as `kerf segment` does
@@ -53,8 +61,9 @@ struct Inspection {
   std::string position_unit;
   Sampling sampling;
   std::vector<InspectedSignal> signals;  ///< positions, forces (measured where there is a sensor), channels
-  std::optional<ContactRows> contact;    ///< unknown without a force
-  std::optional<Lag> lag;                ///< of the force after the position
+  std::vector<InspectedVelocity> velocities;
+  std::optional<ContactRows> contact;  ///< unknown without a force
+  std::optional<Lag> lag;              ///< of the force after the position
   InspectedCycles cycles;
 };
 

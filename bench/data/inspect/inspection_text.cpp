@@ -98,6 +98,16 @@ ordered_json as_json(const std::optional<Lag>& lag) {
           {"rows", lag->rows}};
 }
 
+ordered_json as_json(const std::optional<VelocityMatch>& match) {
+  if (!match) return nullptr;
+  return {{"gain", match->gain},
+          {"offset", match->offset},
+          {"lag_s", match->lag_s},
+          {"correlation", match->correlation},
+          {"correlation_now", match->correlation_now},
+          {"ways", match->ways}};
+}
+
 ordered_json as_json(const FlaggedCycle& cycle) {
   const CycleFacts& facts = cycle.facts;
   ordered_json flags = ordered_json::array();
@@ -224,11 +234,15 @@ std::string lag_line(const std::optional<Lag>& lag) {
 ordered_json inspection_as_json(const Inspection& inspection) {
   ordered_json signals = ordered_json::object();
   for (const InspectedSignal& signal : inspection.signals) signals[signal.name] = as_json(signal);
+  ordered_json velocities = ordered_json::object();
+  for (const InspectedVelocity& velocity : inspection.velocities)
+    velocities[velocity.name] = as_json(velocity.match);
   return {{"recording", inspection.recording},
           {"axis", inspection.axis},
           {"rows", inspection.sampling.rows},
           {"sampling", as_json(inspection.sampling)},
           {"signals", signals},
+          {"velocities", velocities},
           {"contact", as_json(inspection.contact, inspection.options.felt)},
           {"lag", as_json(inspection.lag)},
           {"cycles", cycles_as_json(inspection)},
