@@ -181,7 +181,7 @@ bool AskedFit::fits_segments() const {
 
 FitSource source_of(const AskedFit& asked, const schema::Recording& recording, const std::string& name,
                     std::size_t place) {
-  FitSource source{.recording = &recording, .name = name, .axis = find_axis(recording, asked.axis)};
+  FitSource source{.recording = &recording, .name = name, .axis = find_cut_axis(recording, asked.axis)};
   source.contact = asked.contact.over(contact_of(recording, source.axis));
   const auto& noise = asked.noise;
   if (!noise.empty()) source.noise_n = noise.size() == 1 ? noise.front() : noise.at(place);
@@ -208,10 +208,12 @@ RecordingFit fit_files(const std::vector<std::string>& files, const AskedFit& as
   for (const std::string& file : files) recordings.push_back(read_fitted_columns(file));
   NewNames new_names;
   std::vector<FitSource> sources;
+  AskedFit along(asked);  // one axis, that of the first
   for (std::size_t i = 0; i < recordings.size(); ++i) {
+    if (i == 1 && recordings[0].dimensions() > 1) along.axis = recordings[0].axes[sources.front().axis].name;
     // What names each file apart from the others: its stem, with a number where two have the same.
     const std::string name = new_names.take(std::filesystem::path(files[i]).stem()).string();
-    sources.push_back(source_of(asked, recordings[i], name, i));
+    sources.push_back(source_of(along, recordings[i], name, i));
     sources.back().taken = [&recording = recordings[i]] { drop_rows(recording); };
   }
   RecordingFit fit = fit_recordings(sources, options_of(asked, sources.front()));

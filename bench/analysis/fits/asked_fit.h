@@ -36,7 +36,7 @@ struct AskedJnd {
 
 /// A fit in the words of a person, as `kerf fit` and kerf.fit() of Python take them.
 struct AskedFit {
-  std::string axis;  ///< empty: the first
+  std::string axis;  ///< empty: that of the cycles, or the first
   AskedContact contact;
   std::vector<double> noise;  ///< none, one, or one a recording
   AskedJnd jnd;

@@ -43,7 +43,7 @@ void add_law_options(Verb& verb, FitArguments& arguments) {
 }
 
 void add_data_options(Verb& verb, FitArguments& arguments) {
-  verb.add_option("--axis", arguments.axis, "Axis to fit (default: the first)");
+  verb.add_option("--axis", arguments.axis, "Axis to fit (default: that of the cycles, or the first)");
   add_contact_options(verb, arguments.contact, "from the recording");
   verb.add_option("--rows", arguments.rows, "Rows that laws are fitted to and judged by")
       .one_of({"contact", "all"})
