@@ -5,10 +5,13 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "fits/asked_fit.h"
 #include "fits/fit_files.h"
 #include "recordings/whole_recording.h"
 
@@ -96,6 +99,25 @@ TEST(FitRecording, IsTheSameOnOneThreadAndOnSeveral) {
     return fits_as_json(fit).dump();
   };
   EXPECT_TRUE(fitted_on(1) == fitted_on(3));
+}
+
+TEST(AskedFit, IsAlongTheAxisOfTheCyclesWhereNoneIsNamed) {
+  schema::Recording recording = punch();
+  recording.axes.insert(recording.axes.begin(), {.name = "x", .position_unit = "m", .force_unit = "N"});
+  const auto beside = [](std::vector<double>& column) {
+    std::vector<double> both;
+    for (const double along : column) both.insert(both.end(), {0.0, along});
+    column = std::move(both);
+  };
+  for (auto* const column : {&recording.position, &recording.velocity, &recording.force_measured})
+    beside(*column);
+  EXPECT_EQ(source_of({}, recording, "punch").axis, 0U);
+  recording.cycles = schema::Cycles{.axis = 1};
+  const FitSource source = source_of({}, recording, "punch");
+  EXPECT_EQ(source.axis, 1U);
+  AskedFit along_x;
+  along_x.axis = "x";
+  EXPECT_EQ(source_of(along_x, recording, "punch").axis, 0U);
 }
 
 }  // namespace
