@@ -88,6 +88,17 @@ TEST(Inspection, OfRowsThatAreNotFiniteAndOfNone) {
   EXPECT_TRUE(json["contact"].is_null());
 }
 
+TEST(Inspection, HoldsAVelocityThatWasRecordedAgainstThePosition) {
+  schema::Recording recording = test::punch({});
+  recording.header.velocity_derived.clear();
+  EXPECT_THAT(warnings_of(inspected(recording)), Not(Contains(HasSubstr("dx/dt"))));
+  for (double& velocity : recording.velocity) velocity = -velocity;
+  EXPECT_THAT(warnings_of(inspected(recording)), Contains(HasSubstr("of dx/dt: turned sign")));
+  recording.header.velocity_derived = "from the position";
+  EXPECT_THAT(warnings_of(inspected(recording)), Not(Contains(HasSubstr("dx/dt"))))
+      << "nobody has recorded it";
+}
+
 TEST(Inspection, CallsTheWorkOfACycleAnEnergyOnlyWhereItIsOne) {
   schema::Recording recording = test::punch({.seconds = 8.0});
   EXPECT_EQ(inspection_as_json(inspected(recording))["cycles"]["work_unit"], "J");
