@@ -1,0 +1,98 @@
+#include "inspect/velocity_match.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <numbers>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "bench/data/inspect/blocked.h"
+
+namespace kerf::bench {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+/// 20 s of a position [m] with its velocity.
+struct Motion {
+  std::vector<double> time_s, position, velocity;
+  double period_s = 0.0;
+  double noise = 0.0;  ///< as inspect() knows it
+
+  Motion(double rate_hz, const std::function<double(double)>& x, const std::function<double(double)>& v)
+      : period_s(1.0 / rate_hz) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(20.0 * rate_hz); ++i) {
+      time_s.push_back(static_cast<double>(i) * period_s);
+      position.push_back(x(time_s.back()));
+      velocity.push_back(v(time_s.back()));
+    }
+  }
+
+  [[nodiscard]] std::optional<VelocityMatch> match() const {
+    const BlockedValues t = test::blocked(time_s);
+    const BlockedValues x = test::blocked(position);
+    const BlockedValues v = test::blocked(velocity);
+    const auto [least, most] = std::ranges::minmax(position);
+    return velocity_match({.time_s = t,
+                           .position = x,
+                           .velocity = v,
+                           .period_s = period_s,
+                           .position_noise = noise,
+                           .position_range = most - least});
+  }
+
+  /// Empty where nothing is said, "unknown" where nothing is known.
+  [[nodiscard]] std::string doubt(const std::string& unit = "m") const {
+    const auto found = match();
+    return found ? velocity_doubt(*found, unit, period_s) : "unknown";
+  }
+};
+
+constexpr double omega = std::numbers::pi;  // strokes of 2 s
+
+/// Strokes of 10 mm.
+Motion strokes(double rate_hz) {
+  return {rate_hz, [](double t) { return 0.005 * (1.0 - std::cos(omega * t)); },
+          [](double t) { return 0.005 * omega * std::sin(omega * t); }};
+}
+
+Motion with(Motion motion, const std::function<double(double)>& change) {
+  std::ranges::transform(motion.velocity, motion.velocity.begin(), change);
+  return motion;
+}
+
+TEST(VelocityMatch, OfWhatIsTheDerivativeIsOneAtAnyRate) {
+  for (const double rate_hz : {20.0, 100.0, 1000.0}) {
+    const auto match = strokes(rate_hz).match();
+    ASSERT_TRUE(match) << rate_hz;
+    EXPECT_NEAR(match->gain, 1.0, 0.03) << rate_hz;
+    EXPECT_GT(match->correlation, 0.99) << rate_hz;
+    EXPECT_EQ(match->lag_s, 0.0) << rate_hz;
+    EXPECT_EQ(strokes(rate_hz).doubt(), "") << rate_hz;
+  }
+}
+
+TEST(VelocityMatch, FindsATurnedSignAndAWrongUnit) {
+  const auto scaled = [](double factor) {
+    return with(strokes(100.0), [factor](double v) { return factor * v; });
+  };
+  EXPECT_NEAR(scaled(-1.0).match()->gain, -1.0, 1e-3);
+  EXPECT_EQ(scaled(-1.0).doubt(), "is -1 of dx/dt: turned sign");
+  EXPECT_EQ(scaled(1e-3).doubt(), "is 0.001 of dx/dt: m/s taken for mm/s?");
+  EXPECT_EQ(scaled(1e3).doubt(), "is 1000 of dx/dt: mm/s taken for m/s?");
+  EXPECT_EQ(scaled(-180.0 / std::numbers::pi).doubt("rad"),
+            "is -57.3 of dx/dt: turned sign, deg/s taken for rad/s?");
+  EXPECT_EQ(scaled(2.0).doubt(), "is 2 of dx/dt") << "no unit that somebody mistakes";
+  EXPECT_EQ(scaled(0.0).doubt(), "is 0 all along, though the position moves");
+}
+
+}  // namespace
+}  // namespace kerf::bench
