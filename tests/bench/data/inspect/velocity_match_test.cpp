@@ -94,5 +94,21 @@ TEST(VelocityMatch, FindsATurnedSignAndAWrongUnit) {
   EXPECT_EQ(scaled(0.0).doubt(), "is 0 all along, though the position moves");
 }
 
+TEST(VelocityMatch, FindsAnotherSignalALaterOneAndAnOffset) {
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> noise(0.0, 0.01);
+  EXPECT_THAT(with(strokes(100.0), [&](double) { return noise(random); }).doubt(),
+              StartsWith("does not follow dx/dt"));
+
+  Motion later = strokes(100.0);
+  std::rotate(later.velocity.begin(), later.velocity.end() - 40, later.velocity.end());
+  ASSERT_TRUE(later.match());
+  EXPECT_NEAR(later.match()->lag_s, 0.4, 0.02);
+  EXPECT_THAT(later.doubt(), StartsWith("follows dx/dt 0.4 s late"));
+
+  EXPECT_THAT(with(strokes(100.0), [](double v) { return v + 0.02; }).doubt(),
+              HasSubstr("0.02 m/s more than dx/dt"));
+}
+
 }  // namespace
 }  // namespace kerf::bench
