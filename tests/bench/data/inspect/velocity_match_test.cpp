@@ -110,5 +110,47 @@ TEST(VelocityMatch, FindsAnotherSignalALaterOneAndAnOffset) {
               HasSubstr("0.02 m/s more than dx/dt"));
 }
 
+TEST(VelocityMatch, DoesNotBlameWhatDriversAndSensorsDo) {
+  std::mt19937_64 random(2);
+  std::normal_distribution<double> noise(0.0, 3e-5);
+  // The velocity as a driver has it: noisy steps of an encoder through a low-pass at 10 Hz, 16 ms late.
+  Motion driver = strokes(1000.0);
+  driver.noise = 3e-5;
+  double filtered = 0.0;
+  double last = driver.position.front();
+  for (std::size_t i = 0; i < driver.position.size(); ++i) {
+    driver.position[i] += noise(random);
+    const double step = (driver.position[i] - last) / driver.period_s;
+    last = driver.position[i];
+    filtered += (1.0 - std::exp(-2.0 * std::numbers::pi * 10.0 * driver.period_s)) * (step - filtered);
+    driver.velocity[i] = filtered;
+  }
+  EXPECT_EQ(driver.doubt(), "");
+
+  Motion unfiltered = strokes(1000.0);
+  unfiltered.noise = 3e-5;
+  for (double& x : unfiltered.position) x += noise(random);
+  for (std::size_t i = 1; i < unfiltered.position.size(); ++i)
+    unfiltered.velocity[i] = (unfiltered.position[i] - unfiltered.position[i - 1]) / unfiltered.period_s;
+  EXPECT_EQ(unfiltered.doubt(), "") << "noise of the slopes is twice the velocity";
+
+  // Half of the rows are not there, as a logger under load leaves them out.
+  Motion uneven = strokes(100.0);
+  std::uniform_real_distribution<double> chance(0.0, 1.0);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < uneven.time_s.size(); ++i) {
+    if (chance(random) < 0.5) continue;
+    for (auto* const column : {&uneven.time_s, &uneven.position, &uneven.velocity})
+      (*column)[kept] = (*column)[i];
+    ++kept;
+  }
+  for (auto* const column : {&uneven.time_s, &uneven.position, &uneven.velocity}) column->resize(kept);
+  EXPECT_EQ(uneven.doubt(), "");
+
+  Motion wrapped = strokes(100.0);  // an angle that is told up to a turn, here of 7 mm
+  for (double& x : wrapped.position) x = std::fmod(x, 0.007);
+  EXPECT_EQ(wrapped.doubt(), "");
+}
+
 }  // namespace
 }  // namespace kerf::bench
