@@ -152,5 +152,17 @@ TEST(VelocityMatch, DoesNotBlameWhatDriversAndSensorsDo) {
   EXPECT_EQ(wrapped.doubt(), "");
 }
 
+TEST(VelocityMatch, KnowsNothingOfWhatRestsOrIsShort) {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> noise(0.0, 3e-5);
+  Motion rest(
+      100.0, [&](double) { return noise(random); }, [](double) { return 1.0; });
+  rest.noise = 3e-5;
+  EXPECT_EQ(rest.doubt(), "unknown");
+  Motion few = strokes(100.0);
+  for (auto* const column : {&few.time_s, &few.position, &few.velocity}) column->resize(10);
+  EXPECT_EQ(few.doubt(), "unknown");
+}
+
 }  // namespace
 }  // namespace kerf::bench
