@@ -162,7 +162,7 @@ def fit(recording: Source | Sequence[Source], laws: str | Sequence[str] | None =
 
     :param recording: path or kerf.Recording (all its rows), or several
     :param laws: a name, several, or "all"; None: those that say something of any recording along an axis
-    :param axis: name of the axis; None: the first
+    :param axis: name of the axis; None: that of the cycles, or the first
     :param contact, direction: where the penetration is zero [m or rad], and "increasing" or "decreasing"; None: as the recording says
     :param rows: "contact" or "all"; cycles: "good", "all" or "2-8,10"
     :param rate: of the loop that errors as rendered are of, 100 to 10000 [Hz]
