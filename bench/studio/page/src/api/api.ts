@@ -24,9 +24,14 @@ type Parameters = Record<string, string | number | readonly number[]>;
 
 export class Api {
   private readonly requests = new Requests();
-  private isOutdated = false; // as the last status says
+  private outdated = false; // as the last status says
 
   constructor(readonly token: string) {}
+
+  /** The studio that runs is another one: nothing is asked of it but its status, and zero force. */
+  get isOutdated(): boolean {
+    return this.outdated;
+  }
 
   async get<Answer>(path: string, parameters: Parameters = {}, signal?: AbortSignal): Promise<Answer> {
     return this.read(path, parameters, signal, async (answer) => (await answer.json()) as Answer);
@@ -103,10 +108,10 @@ export class Api {
   async loopStatus(signal: AbortSignal): Promise<LoopStatus> {
     try {
       const answer = await this.ask("/api/live/status", { signal });
-      this.isOutdated = false;
+      this.outdated = false;
       return (await answer.json()) as LoopStatus;
     } catch (error) {
-      if (isRefused(error)) this.isOutdated = true;
+      if (isRefused(error)) this.outdated = true;
       throw error;
     }
   }
@@ -141,9 +146,9 @@ export class Api {
     return this.requests.take(async (own) => take(await this.send(address(path, parameters), { signal: own })), signal);
   }
 
-  /** A page that is outdated asks for nothing: all would be refused, and refusals are counted. */
+  /** All would be refused to a page that is outdated, and refusals are counted. */
   private async send(path: string, options: RequestInit): Promise<Response> {
-    if (this.isOutdated) throw new ApiError(403, "This page is older than the studio that runs: reload it.");
+    if (this.outdated) throw new ApiError(403, "This page is older than the studio that runs: reload it.");
     return this.ask(path, options);
   }
 

@@ -76,7 +76,9 @@ export class LiveStream {
     if (silent < 1) return;
     if (silent >= 2) this.listener.stale(Math.floor(silent));
     void this.ask();
-    if (silent >= 2 && now - this.opened > 3000) this.open(this.ticks);
+    if (this.api.isOutdated)
+      this.source?.close(); // which the browser would open again
+    else if (silent >= 2 && now - this.opened > 3000) this.open(this.ticks);
   }
 
   /** Why the stream is silent: no loop runs, a session forbids it, or the server is away. */
